@@ -1,0 +1,71 @@
+"""The raw record of one agent in one world, and the one schema that it is stored with."""
+
+from dataclasses import dataclass, fields
+
+import pyarrow as pa
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """One row of the store. None where a thing is not defined or was lost with a killed process."""
+
+    scenario: str
+    variant: str
+    kind: str
+    agent: str
+    """The agent's label in the scenario."""
+    episode: int
+    outcome: str
+    """The name of a `worlds.types.Outcome`."""
+    steps: int
+    """Decisions that were carried out."""
+    budget_steps: int
+    length: float
+    """Length travelled, in the unit of the kind."""
+    straight: float
+    """Straight distance from start to goal, the length of the optimum if nothing were in the way."""
+    shortest: float
+    """Length of the optimum on the full map."""
+    reference_length: float | None
+    """Length that A* on the map seen so far travelled in the same world; None where it did not reach the goal."""
+    judged: int
+    """Decisions taken while the agent's own known map had a path to the goal."""
+    wrong_decisions: int
+    """Judged decisions that no optimal plan on the agent's own known map would take."""
+    strict_wrong: int
+    """Judged decisions that differ from those of A* on the agent's own known map."""
+    setup_seconds: float
+    decision_seconds: tuple[float, ...]
+    """Seconds of each decision, in order."""
+    peak_memory_bytes: int
+    """The most bytes carried from one decision to the next."""
+    parameter_bytes: int
+    search_nodes: int
+    """Search effort: nodes expanded or tree vertices added."""
+    actions: tuple[float, ...]
+    """The actions one after the other, flat: enough to replay the episode exactly."""
+    detail: str
+    """One line on what went wrong, where something did; else empty."""
+    density: float
+    detour: float
+    dead_ends: float
+    openness: float
+    workers: int
+    """Worker processes that ran side by side; it belongs to the timings."""
+    agent_key: str
+    world_key: str
+
+
+TIMINGS = ("setup_seconds", "decision_seconds", "workers")
+"""Columns that differ from run to run; all others are the same, bit for bit."""
+
+_ARROW = {
+    str: pa.string(),
+    int: pa.int64(),
+    float: pa.float64(),
+    float | None: pa.float64(),
+    tuple[float, ...]: pa.list_(pa.float64()),
+}
+
+SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode)])  # type: ignore[index]
+"""The columns of `episodes/*.parquet`."""

@@ -1,0 +1,46 @@
+"""A random walk: the floor that every other agent should be above."""
+
+from typing import ClassVar
+
+import numpy as np
+
+from worlds.settings import Settings
+from worlds.types import BLOCKED, Move, Observation, Task
+
+
+class RandomWalk(Settings):
+    """Takes a uniformly random move that the current view does not show to be blocked."""
+
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+
+    def start(self, task: Task, rng: np.random.Generator) -> "RandomWalkAgent":
+        """A fresh agent that draws its moves from `rng`."""
+        del task
+        return RandomWalkAgent(rng)
+
+    def parameter_bytes(self) -> int:
+        """Nothing is learned."""
+        return 0
+
+
+class RandomWalkAgent:
+    """One episode of a random walk."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        """Draw from `rng`, once per decision."""
+        self.rng = rng
+
+    def act(self, observation: Observation) -> Move | None:
+        """A random move; gives up where all four are seen to be blocked."""
+        middle = len(observation.view) // 2
+        luck = self.rng.random()  # drawn even where there is no choice, so that the stream never shifts
+        moves = [move for move in Move if observation.view[middle + move.delta[0], middle + move.delta[1]] != BLOCKED]
+        return moves[int(luck * len(moves))] if moves else None
+
+    def memory_bytes(self) -> int:
+        """Nothing is carried from one decision to the next."""
+        return 0
+
+    def search_nodes(self) -> int:
+        """No search."""
+        return 0

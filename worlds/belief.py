@@ -1,0 +1,125 @@
+"""Seeing a grid, moving on it and remembering it: the one implementation that episodes, planners and training share.
+
+Words used here
+    blocked  [H, W] bool, the true map; everything outside it is blocked
+    known    [H, W] uint8 of UNKNOWN, FREE, BLOCKED, the map seen so far
+    view     [K, K] uint8, the sensor's reading around the agent, whose own cell is in the middle
+    touched  [n] int32, flat indices (row * W + column) of the cells whose reading a view has changed
+"""
+
+import numpy as np
+
+from worlds.kernel import kernel
+from worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell, Observation
+
+STEPS = np.array(DELTAS, np.int64)  # [4, 2]
+
+
+@kernel
+def look(blocked: Array, row: int, column: int, radius: int, occlusion: bool) -> Array:
+    """The true view from a cell.
+
+    With `occlusion`, a cell shows UNKNOWN where a blocked cell lies across the straight line between the two centres.
+
+    Returns:
+        [K, K] uint8, `K = 2 * radius + 1`.
+    """
+    height, width = blocked.shape
+    side = 2 * radius + 1
+    view = np.full((side, side), BLOCKED, np.uint8)  # [K, K]
+    top, left = row - radius, column - radius
+    for r in range(max(0, -top), min(side, height - top)):
+        for c in range(max(0, -left), min(side, width - left)):
+            if not blocked[top + r, left + c]:
+                view[r, c] = FREE
+    if occlusion:
+        for r in range(side):
+            for c in range(side):
+                if hidden(blocked, row, column, r - radius, c - radius):
+                    view[r, c] = UNKNOWN
+    return view
+
+
+@kernel
+def hidden(blocked: Array, row: int, column: int, down: int, right: int) -> bool:
+    """Whether a blocked cell lies across the straight line between the centres of two cells.
+
+    The line is walked cell by cell. Where it runs exactly through a corner it is cut only if both cells beside that
+    corner are blocked. The two cells at its ends do not cut it.
+    """
+    height, width = blocked.shape
+    rows, columns = abs(down), abs(right)
+    r, c, i, j = row, column, 0, 0  # the cell, and how many rows and columns it is away
+    while i + j < rows + columns:
+        side = (2 * i + 1) * columns - (2 * j + 1) * rows  # < 0: the line leaves the cell through a row's edge
+        down_cell = (r + 1 if down > 0 else r - 1, c)
+        right_cell = (r, c + 1 if right > 0 else c - 1)
+        if side == 0:
+            if _wall(blocked, height, width, down_cell) and _wall(blocked, height, width, right_cell):
+                return True
+            r, c, i, j = down_cell[0], right_cell[1], i + 1, j + 1
+        elif side < 0:
+            r, i = down_cell[0], i + 1
+        else:
+            c, j = right_cell[1], j + 1
+        if i + j < rows + columns and _wall(blocked, height, width, (r, c)):
+            return True
+    return False
+
+
+@kernel
+def _wall(blocked: Array, height: int, width: int, cell: Cell) -> bool:
+    return not (0 <= cell[0] < height and 0 <= cell[1] < width) or blocked[cell]
+
+
+@kernel
+def passable(blocked: Array, row: int, column: int, move: int) -> bool:
+    """Whether a move from a cell ends on a free cell of the map."""
+    r, c = row + STEPS[move, 0], column + STEPS[move, 1]
+    height, width = blocked.shape
+    return 0 <= r < height and 0 <= c < width and not blocked[r, c]
+
+
+@kernel
+def fuse(known: Array, view: Array, row: int, column: int) -> Array:
+    """Write a view into the known map: the latest reading wins, UNKNOWN tells nothing, the own cell is free.
+
+    Returns:
+        `touched`, in rows from the top.
+    """
+    height, width = known.shape
+    side = view.shape[0]
+    top, left = row - side // 2, column - side // 2
+    touched = np.empty(side * side, np.int32)
+    count = 0
+    for r in range(max(0, -top), min(side, height - top)):
+        for c in range(max(0, -left), min(side, width - left)):
+            reading = view[r, c]
+            if r == side // 2 and c == side // 2:
+                reading = FREE
+            if reading != UNKNOWN and reading != known[top + r, left + c]:
+                known[top + r, left + c] = reading
+                touched[count] = (top + r) * width + left + c
+                count += 1
+    return touched[:count].copy()
+
+
+class KnownMap:
+    """The map as far as one agent has seen it."""
+
+    def __init__(self, extent: tuple[float, ...]) -> None:
+        """Nothing is known yet of a map of `extent` `(H, W)`."""
+        self.cells: Array = np.zeros((int(extent[0]), int(extent[1])), np.uint8)  # [H, W], UNKNOWN
+
+    def update(self, observation: Observation) -> Array:
+        """Write the view of an observation into the map.
+
+        Returns:
+            [n] int32, flat indices of the cells whose reading has changed.
+        """
+        return fuse(self.cells, observation.view, *observation.place)
+
+
+def misread(view: Array, wrong: Array) -> Array:
+    """The view with free and blocked exchanged where `wrong` [K, K] bool says so; UNKNOWN stays."""
+    return np.where(wrong & (view != UNKNOWN), FREE + BLOCKED - view, view).astype(np.uint8)  # [K, K]

@@ -1,0 +1,54 @@
+"""The conditions of an episode that every kind of world has: which tasks are drawn, and what they may use up."""
+
+from typing import Annotated, Any
+
+from pydantic import Discriminator, Field, Tag
+
+from worlds.settings import Positive, PositiveRange, Settings
+from worlds.types import Budget
+
+
+class PerDistance(Settings):
+    """A step budget that grows with the straight distance: `per_distance * distance + plus` steps, rounded down.
+
+    The straight distance is what every agent can compute from its task: the length of the optimal path if nothing were
+    in the way. The true optimum would tell the agent about the map.
+    """
+
+    per_distance: Annotated[float, Field(gt=0)]
+    plus: Annotated[int, Field(ge=0)] = 0
+
+
+def _form(steps: Any) -> str:
+    return "mapping" if isinstance(steps, dict | PerDistance) else "number"
+
+
+StepBudget = Annotated[
+    Annotated[Positive, Tag("number")] | Annotated[PerDistance, Tag("mapping")],
+    Discriminator(_form),
+]
+
+
+class BudgetSettings(Settings):
+    """The `budget` block: decisions, the hard limit against hangs [s], and bytes carried between decisions."""
+
+    steps: StepBudget
+    hard_seconds: Annotated[float, Field(gt=0)] = 300.0
+    memory_bytes: Positive | None = None
+
+    def over(self, straight: float) -> Budget:
+        """The budget of a task whose goal is `straight` away, in the length unit of its kind."""
+        steps = self.steps
+        if isinstance(steps, PerDistance):
+            steps = max(1, int(steps.per_distance * straight + steps.plus))
+        return Budget(steps, self.hard_seconds, self.memory_bytes)
+
+
+class Tasks(Settings):
+    """The `tasks` block: bounds of the full-map optimum, both included; by default 1 and the task's step budget."""
+
+    distance: PositiveRange | None = None
+
+    def bounds(self, budget: Budget) -> tuple[int, int]:
+        """The least and the largest optimum of a task with this budget."""
+        return self.distance or (1, budget.steps)

@@ -1,0 +1,42 @@
+"""What all settings share: frozen, nothing unknown allowed, and the few types their fields are made of."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo
+
+
+class Settings(BaseModel):
+    """A block of a scenario: frozen, hashable, and closed to fields it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def _ascending(bounds: tuple[int, int]) -> tuple[int, int]:
+    if bounds[0] > bounds[1]:
+        raise ValueError("two numbers, the smaller first")
+    return bounds
+
+
+Count = Annotated[int, Field(ge=0)]
+"""A whole number from 0."""
+
+Positive = Annotated[int, Field(ge=1)]
+"""A whole number from 1."""
+
+Probability = Annotated[float, Field(ge=0, le=1)]
+"""A number from 0 to 1."""
+
+Range = Annotated[tuple[Count, Count], AfterValidator(_ascending)]
+"""`[least, most]`, both included, from 0."""
+
+PositiveRange = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
+"""`[least, most]`, both included, from 1."""
+
+
+def _locate(path: Path, info: ValidationInfo) -> Path:
+    return Path((info.context or {}).get("folder", ""), path)
+
+
+MapFile = Annotated[Path, AfterValidator(_locate)]
+"""A file; a relative path is relative to the folder of the scenario (validation context `folder`) or to where one stands."""
