@@ -10,9 +10,7 @@ Words used here
 import numpy as np
 
 from worlds.kernel import kernel
-from worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell, Observation
-
-STEPS = np.array(DELTAS, np.int64)  # [4, 2]
+from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Observation
 
 
 @kernel
@@ -47,7 +45,6 @@ def hidden(blocked: Array, row: int, column: int, down: int, right: int) -> bool
     The line is walked cell by cell. Where it runs exactly through a corner it is cut only if both cells beside that
     corner are blocked. The two cells at its ends do not cut it.
     """
-    height, width = blocked.shape
     rows, columns = abs(down), abs(right)
     r, c, i, j = row, column, 0, 0  # the cell, and how many rows and columns it is away
     while i + j < rows + columns:
@@ -55,29 +52,22 @@ def hidden(blocked: Array, row: int, column: int, down: int, right: int) -> bool
         down_cell = (r + 1 if down > 0 else r - 1, c)
         right_cell = (r, c + 1 if right > 0 else c - 1)
         if side == 0:
-            if _wall(blocked, height, width, down_cell) and _wall(blocked, height, width, right_cell):
+            if not passable(blocked, *down_cell) and not passable(blocked, *right_cell):
                 return True
             r, c, i, j = down_cell[0], right_cell[1], i + 1, j + 1
         elif side < 0:
             r, i = down_cell[0], i + 1
         else:
             c, j = right_cell[1], j + 1
-        if i + j < rows + columns and _wall(blocked, height, width, (r, c)):
+        if i + j < rows + columns and not passable(blocked, r, c):
             return True
     return False
 
 
 @kernel
-def _wall(blocked: Array, height: int, width: int, cell: Cell) -> bool:
-    return not (0 <= cell[0] < height and 0 <= cell[1] < width) or blocked[cell]
-
-
-@kernel
-def passable(blocked: Array, row: int, column: int, move: int) -> bool:
-    """Whether a move from a cell ends on a free cell of the map."""
-    r, c = row + STEPS[move, 0], column + STEPS[move, 1]
-    height, width = blocked.shape
-    return 0 <= r < height and 0 <= c < width and not blocked[r, c]
+def passable(blocked: Array, row: int, column: int) -> bool:
+    """Whether a cell lies on the map and is free."""
+    return 0 <= row < blocked.shape[0] and 0 <= column < blocked.shape[1] and not blocked[row, column]
 
 
 @kernel

@@ -90,15 +90,15 @@ class GridWorld:
         if type(action) is not Move:
             raise TypeError(f"act returned {action!r} ({type(action).__name__}); expected a Move or None")
         move, slipped = self._slip(action, rng)
-        free = move is not None and passable(self.blocked, *state.place, move)
-        place = state.place
-        if move is not None and free:
-            place = (place[0] + move.delta[0], place[1] + move.delta[1])
-        stopped = move is not None and not free
+        place, stopped = state.place, False
+        if move is not None:
+            ahead = (place[0] + move.delta[0], place[1] + move.delta[1])
+            stopped = not passable(self.blocked, *ahead)
+            place = place if stopped else ahead
         witnessed = state.witnessed or self._witnesses(place)
         return Step(
             GridState(state.step + 1, place, stopped, witnessed),
-            length=float(free),
+            length=float(place != state.place),
             collided=stopped and not slipped and self.rules.collision == "fails",
             reached=witnessed and place == self.task.goal,
         )

@@ -1,0 +1,60 @@
+"""Was a decision right, by what the agent itself had seen? Computed beside the loop, never timed."""
+
+import numpy as np
+
+from planners.astar import AStar, AStarAgent
+from worlds.belief import KnownMap, passable
+from worlds.distances import FAR, distances
+from worlds.kernel import kernel
+from worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
+
+
+class GridJudge:
+    """Follows one agent's known map and counts its wrong decisions.
+
+    A decision is judged while the known map, unknown counted as free, has a path to the goal. It is *wrong* when no
+    shortest path there begins with it, and *strictly wrong* when A* would decide otherwise.
+    """
+
+    def __init__(self, task: Task) -> None:
+        """Nothing is known yet."""
+        self.goal: Cell = task.goal
+        self.known = KnownMap(task.extent)
+        self.blocked: Array = np.zeros(self.known.cells.shape, np.bool_)  # [H, W]
+        self.distance: Array = np.full(self.blocked.shape, FAR, np.int32)  # [H, W], from the goal
+        self.settled = -1  # distances up to this one are known for all cells
+        self.reference: AStarAgent = AStar().start(task, np.random.default_rng(0))
+        self.judged = 0
+        self.wrong = 0
+        self.strict_wrong = 0
+
+    def see(self, observation: Observation, move: Move) -> None:
+        """Judge the decision `move`, taken on `observation`."""
+        reference = self.reference.act(observation)
+        self._update(observation)
+        left = int(self.distance[observation.place])
+        if left == FAR or self.blocked[self.goal]:
+            return
+        self.judged += 1
+        self.strict_wrong += move is not reference
+        ahead = (observation.place[0] + move.delta[0], observation.place[1] + move.delta[1])
+        self.wrong += not (passable(self.blocked, *ahead) and self.distance[ahead] == left - 1)
+
+    def _update(self, observation: Observation) -> None:
+        """Bring the distances from the goal up to date, as far out as the agent's cell."""
+        touched = self.known.update(observation)
+        changed = _copy_walls(self.known.cells.reshape(-1), touched, self.blocked.reshape(-1))
+        if changed or self.distance[observation.place] > self.settled:
+            self.distance = distances(self.blocked, self.goal, observation.place)
+            self.settled = int(self.distance[observation.place])
+
+
+@kernel
+def _copy_walls(known: Array, touched: Array, blocked: Array) -> bool:
+    """Write which of the `touched` cells are blocked, all maps flat [H * W]; whether that changed anything."""
+    changed = False
+    for cell in touched:
+        wall = known[cell] == BLOCKED
+        changed |= wall != blocked[cell]
+        blocked[cell] = wall
+    return changed
