@@ -10,7 +10,7 @@ Words used here
 import numpy as np
 
 from worlds.kernel import kernel
-from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Observation
+from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Observation
 
 
 @kernel

@@ -39,4 +39,4 @@ def _locate(path: Path, info: ValidationInfo) -> Path:
 
 
 MapFile = Annotated[Path, AfterValidator(_locate)]
-"""A file; a relative path is relative to the scenario's folder (validation context `folder`), or to where one stands."""
+"""A file; a relative path starts at the scenario's folder (validation context `folder`), or at where one stands."""
