@@ -44,11 +44,12 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
         MapError: the map family cannot make the world.
     """
     assert entry.settings is not None
-    world, practice = _world(variant, episode), _practice(variant)
+    world = episode_world(variant, episode)
+    _practice(variant)  # outside of what the agent answers for
     judge = JUDGES[world.task.kind](world.task) if world.task.kind in JUDGES else None
     record = Record()
     try:
-        _warm_up(entry, practice, variant)
+        _warm_up(variant, entry)
         _start_and_roll(world, entry.settings, variant, episode, record, judge)
     except (Exception, SystemExit) as error:  # noqa: BLE001  an agent may raise anything
         record.outcome, record.detail = Outcome.CRASHED, _sentence(error)
@@ -95,7 +96,7 @@ def roll(world: World, agent: Agent, luck: np.random.Generator, record: Record, 
 def _start_and_roll(
     world: World, settings: AgentSettings, variant: Variant, episode: int, record: Record, judge: GridJudge | None
 ) -> None:
-    luck, own = (_stream(variant, purpose, episode) for purpose in ("luck", "agent"))
+    luck, own = (episode_stream(variant, purpose, episode) for purpose in ("luck", "agent"))
     record.parameter_bytes = _count(settings.parameter_bytes(), "parameter_bytes")
     began = perf_counter()
     agent = settings.start(world.task, own)
@@ -104,20 +105,25 @@ def _start_and_roll(
     record.search_nodes = _count(agent.search_nodes(), "search_nodes")
 
 
-def _stream(variant: Variant, purpose: str, episode: int) -> np.random.Generator:
+def episode_stream(variant: Variant, purpose: str, episode: int) -> np.random.Generator:
     """Worlds that differ in their sensor or their rules alone are drawn from the same stream: they share their maps."""
     return stream(variant.seed, variant.family.words(), purpose, episode)
 
 
 @lru_cache(maxsize=16)
-def _world(variant: Variant, episode: int) -> World:
-    return variant.family.sample(_stream(variant, "map", episode), episode, variant.conditions)
+def episode_world(variant: Variant, episode: int) -> World:
+    """The world of an episode; the last few are kept, for agents that meet the same one.
+
+    Raises:
+        MapError: the map family cannot make it.
+    """
+    return variant.family.sample(episode_stream(variant, "map", episode), episode, variant.conditions)
 
 
 @lru_cache(maxsize=16)
 def _facts(variant: Variant, episode: int) -> Mapping[str, Any]:
     """What the record of an episode says of its world, whoever plays."""
-    world = _world(variant, episode)
+    world = episode_world(variant, episode)
     return {
         "kind": world.task.kind,
         "budget_steps": world.task.budget.steps,
@@ -140,14 +146,14 @@ def _reference_length(world: World, variant: Variant, episode: int) -> float | N
 @lru_cache(maxsize=16)
 def _practice(variant: Variant) -> World:
     """A throw-away world of the same kind and size."""
-    return variant.family.sample(_stream(variant, "warm-up map", 0), 0, variant.conditions)
+    return variant.family.sample(episode_stream(variant, "warm-up map", 0), 0, variant.conditions)
 
 
 @cache
-def _warm_up(entry: Entry, practice: World, variant: Variant) -> None:
+def _warm_up(variant: Variant, entry: Entry) -> None:
     """One decision on a throw-away task in each process, so that no compilation and no first call is ever timed."""
     assert entry.settings is not None
-    rng = _stream(variant, "warm-up", 0)
+    practice, rng = _practice(variant), episode_stream(variant, "warm-up", 0)
     agent = entry.settings.start(practice.task, rng)
     agent.act(practice.sense(practice.reset(), rng))
     agent.memory_bytes()

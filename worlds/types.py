@@ -17,6 +17,8 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from worlds.mistake import Mistake
+
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 """The three values of a cell in a view and in a known map."""
 
@@ -186,7 +188,7 @@ class MapFamily(Protocol):
         """How many different episodes there are; None: any number."""
 
 
-class MapError(ValueError):
+class MapError(Mistake):
     """A map or a task that cannot be made or read; its text is one line that names the file or the family."""
 
 

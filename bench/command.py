@@ -1,0 +1,131 @@
+"""The command line. Nothing heavy is imported before a command needs it."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="fogbench",
+    help="Plan in the fog: learned and classical planners, one partial view, one scoreboard.\n\n"
+    "Start with `fogbench run`: it plays every scenario, prints the tables and leaves them with the plots in results/. "
+    "Stop it whenever you like: the next run goes on where it was.",
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+    add_completion=False,
+)
+
+DONE, CRASHED, WRONG = 0, 1, 2
+"""Exit codes: done; finished, but an agent crashed or hung; the command or a file was wrong."""
+
+Paths = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[SCENARIO]...",
+        help="Scenario files, folders of them, or names of shipped ones (`grid`). Default: all that are shipped.",
+        show_default=False,
+    ),
+]
+Results = Annotated[Path, typer.Option(help="Where the results of all scenarios are kept.")]
+
+
+@app.command()
+def run(
+    scenarios: Paths = None,
+    episodes: Annotated[
+        int | None, typer.Option(min=1, help="Episodes a cell, instead of what the files say.", show_default=False)
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Worker processes. Default: the CPUs at hand.", show_default=False)
+    ] = None,
+    results: Results = Path("results"),
+) -> None:
+    """Play the episodes that are not recorded yet, then print the tables and write them with the plots.
+
+    Exit code 0: done. 1: finished, but an agent crashed or hung. 2: the command or a file was wrong.
+    """
+    from bench.session import run_all
+
+    crashed = run_all(_scenarios(scenarios), episodes, workers, results)
+    raise typer.Exit(CRASHED if crashed else DONE)
+
+
+@app.command()
+def check(scenarios: Paths = None) -> None:
+    """Read scenario files, report every mistake with its place, and say what a run would play."""
+    from bench.session import check_all
+
+    check_all(_scenarios(scenarios))
+
+
+@app.command("list")
+def list_() -> None:
+    """List the scenarios, map families and agents that are at hand, with a sentence on each."""
+    from bench.listing import show
+
+    show()
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of scenario files, for completion and checks in editors."""
+    import json
+
+    from bench.schema import schema as scenario_schema
+
+    typer.echo(json.dumps(scenario_schema(), indent=2))
+
+
+@app.command()
+def report(scenarios: Paths = None, results: Results = Path("results")) -> None:
+    """Print and write the tables and plots of what is recorded; nothing is run."""
+    from bench.session import report_all
+
+    report_all(_scenarios(scenarios), results)
+
+
+@app.command()
+def replay(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a shipped scenario.")],
+    agent: Annotated[str, typer.Option(help="Label of the agent.")],
+    variant: Annotated[str | None, typer.Option(help="Default: the first.", show_default=False)] = None,
+    episode: Annotated[int, typer.Option(min=0, help="Number of the episode.")] = 0,
+    out: Annotated[Path, typer.Option(help="`.png` draws a strip of moments, `.gif` every step.")] = Path("replay.png"),
+    results: Results = Path("results"),
+) -> None:
+    """Play a recorded episode again, verify that it ends as recorded, and draw it.
+
+    Drawn are the truth, what the agent had seen by then, its current view, and its path.
+    """
+    from bench.session import replay_one
+
+    replay_one(*_scenarios([scenario]), agent, variant, episode, out, results)
+
+
+@app.command()
+def doctor() -> None:
+    """Say what is installed, which extras are missing and how to get them, the CPUs, and how fast this machine is."""
+    from bench.doctor import examine
+
+    examine()
+
+
+def _scenarios(names: list[str] | None) -> list[Path]:
+    from bench.shipped import find
+
+    return find(names)
+
+
+def main() -> None:
+    """Run the command line; every mistake of a user ends in lines of text and exit code 2, never in a traceback."""
+    from worlds.mistake import Mistake
+
+    try:
+        app()
+    except Mistake as mistake:
+        typer.echo(str(mistake), err=True)
+        sys.exit(WRONG)
+    except KeyboardInterrupt:
+        typer.echo("Stopped. What was played is recorded; the same command goes on from there.", err=True)
+        sys.exit(130)

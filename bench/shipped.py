@@ -1,0 +1,45 @@
+"""Where the scenarios are: those that come with the project, and those a user names."""
+
+from difflib import get_close_matches
+from pathlib import Path
+
+from worlds.mistake import Mistake
+
+
+def folder() -> Path:
+    """The folder of the shipped scenarios, installed or in a checkout."""
+    here = Path(__file__).parent
+    installed = here / "scenarios"
+    return installed if installed.is_dir() else here.parent / "scenarios"
+
+
+def find(names: list[str] | None) -> list[Path]:
+    """The scenario files that `names` stand for, each once.
+
+    Args:
+        names: files, folders (all `*.yaml` below them), or stems of shipped files; None or empty: all that are shipped.
+
+    Raises:
+        Mistake: a name that stands for nothing; the nearest shipped one is told.
+    """
+    found = [path for name in names or [str(folder())] for path in _find_one(name)]
+    return list(dict.fromkeys(found))
+
+
+def _find_one(name: str) -> list[Path]:
+    path = Path(name)
+    if path.is_file():
+        return [path]
+    if path.is_dir():
+        inside = sorted(path.rglob("*.yaml"))
+        if not inside:
+            raise Mistake(f"{name}: got a folder without scenarios; expected *.yaml files in it or below it.")
+        return inside
+    shipped = {file.stem: file for file in sorted(folder().rglob("*.yaml"))}
+    if name in shipped:
+        return [shipped[name]]
+    near = get_close_matches(name, shipped, n=1)
+    raise Mistake(
+        f"{name}: got no such file; expected a scenario file, a folder of them, or one of {', '.join(shipped)}."
+        + (f" Did you mean {near[0]}?" if near else "")
+    )
