@@ -47,7 +47,7 @@ class DrawnMaps(Settings, ABC):
             found = fit(self.draw(rng, conditions), conditions, rng)
             if found is not None:
                 return found
-        raise MapError(f"{type(self).__name__}: no task with {_wanted(conditions)} was found on {MAPS} maps")
+        raise MapError(f"{type(self).__name__}: no task with {wanted(conditions)} was found on {MAPS} maps")
 
     def words(self) -> str:
         """The settings, as JSON."""
@@ -88,6 +88,7 @@ def world(layout: Layout, start: Cell, goal: Cell, conditions: GridConditions) -
     return GridWorld(layout.blocked, start, task, conditions.rules, optimum, layout.posts)
 
 
-def _wanted(conditions: GridConditions) -> str:
+def wanted(conditions: GridConditions) -> str:
+    """The bounds of a task, in words for an error."""
     distance = conditions.tasks.distance
     return f"an optimum of {distance[0]} to {distance[1]} cells" if distance else "an optimum inside the step budget"
