@@ -4,10 +4,9 @@ import numpy as np
 
 
 def split(total: int, parts: int, least: int, rng: np.random.Generator) -> list[int]:
-    """Cut `total` cells into `parts` of at least `least` each; the cuts fall uniformly on what is above the least.
+    """Cut `total` cells, no fewer than `parts * least`, into `parts` of at least `least` each.
 
-    Raises:
-        ValueError: `total` is less than `parts * least`.
+    The places of the cuts are independent and uniform over what is above the least.
     """
     spare = total - parts * least
     cuts = np.sort(rng.integers(spare + 1, size=parts - 1))  # [parts - 1]
