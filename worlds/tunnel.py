@@ -20,7 +20,7 @@ from worlds.split import split
 from worlds.types import DELTAS, Array, Cell
 
 MARGIN = 2
-"""Free cells all around the walls."""
+"""Free cells around the walls, at least."""
 
 
 class Tunnel(DrawnMaps):
