@@ -33,7 +33,7 @@ def test_distances_are_those_of_networkx(blocked: Array, data: st.DataObject) ->
 
 @given(maps, st.data())
 def test_an_early_stop_keeps_its_promise(blocked: Array, data: st.DataObject) -> None:
-    """All cells up to the target's distance are exact; the others are exact or FAR; a target out of reach stops nothing."""
+    """All cells up to the target's distance are exact, the others exact or FAR; out of reach it stops nothing."""
     cells = st.tuples(*(st.integers(0, side - 1) for side in blocked.shape))
     source, target = data.draw(cells), data.draw(cells)
     found, exact = distances(blocked, source, target), independent(blocked, source)
