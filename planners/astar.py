@@ -57,7 +57,11 @@ class AStarAgent:
         path, expanded = search(cells, place, self.goal)
         self.expanded += expanded
         self.route = Route(path, cells.shape[1])
-        return self.route.move(place, cells) or glance(self.goal, cells.shape, observation)[0]
+        move = self.route.move(place, cells)
+        if move is None:  # `Move.DOWN` is 0, and false
+            move, expanded = glance(self.goal, cells.shape, observation)
+            self.expanded += expanded
+        return move
 
     def memory_bytes(self) -> int:
         """The known map and the path."""
