@@ -20,4 +20,4 @@ def stream(seed: int, world: str, purpose: str, episode: int) -> np.random.Gener
         episode: counts from 0.
     """
     words = np.frombuffer(bytes.fromhex(digest(seed, world, purpose, episode)), "<u4")
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(words.tolist())))
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(words)))
