@@ -1,11 +1,9 @@
 """A path of cells that an agent follows, step by step, until something cuts it."""
 
-import numpy as np
-
 from worlds.kernel import kernel
 from worlds.types import BLOCKED, DELTAS, Array, Cell, Move
 
-MOVES = {delta: move for move, delta in zip(Move, DELTAS, strict=True)}
+MOVES = tuple(Move)
 
 
 class Route:
@@ -24,16 +22,22 @@ class Route:
             place: the agent's cell: where it was before the last move, or one cell on.
             known: [H, W] uint8, the known map.
         """
-        here = place[0] * self.width + place[1]
-        if self.at + 1 < len(self.cells) and self.cells[self.at + 1] == here:
-            self.at += 1
-        if self.at + 1 >= len(self.cells) or self.cells[self.at] != here or _cut(known, self.cells, self.at + 1):
-            return None
-        row, column = divmod(int(self.cells[self.at + 1]), self.width)
-        return MOVES[row - place[0], column - place[1]]
+        self.at, move = _follow(self.cells, self.at, self.width, known, place)
+        return None if move < 0 else MOVES[move]
 
 
 @kernel
-def _cut(known: Array, cells: Array, first: int) -> bool:
-    flat = known.reshape(-1)  # [H * W]
-    return bool(np.any(flat[cells[first:]] == BLOCKED))
+def _follow(cells: Array, at: int, width: int, known: Array, place: Cell) -> tuple[int, int]:
+    """Where on the route `place` is, with `at` the last such answer, and the next move; -1 if there is none."""
+    here = place[0] * width + place[1]
+    if at + 1 < len(cells) and cells[at + 1] == here:
+        at += 1
+    if at + 1 >= len(cells) or cells[at] != here:
+        return at, -1
+    for cell in cells[at + 1 :]:
+        if known[cell // width, cell % width] == BLOCKED:
+            return at, -1
+    for move in range(4):
+        if cells[at + 1] - here == DELTAS[move][0] * width + DELTAS[move][1]:
+            return at, move
+    return at, -1
