@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from planners.astar import AStar, AStarAgent
-from worlds.belief import KnownMap, passable
+from planners.astar import AStarAgent
+from worlds.belief import passable
 from worlds.distances import FAR, distances
 from worlds.kernel import kernel
 from worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
@@ -19,11 +19,10 @@ class GridJudge:
     def __init__(self, task: Task) -> None:
         """Nothing is known yet."""
         self.goal: Cell = task.goal
-        self.known = KnownMap(task.extent)
-        self.blocked: Array = np.zeros(self.known.cells.shape, np.bool_)  # [H, W]
+        self.reference = AStarAgent(task, eager=False)
+        self.blocked: Array = np.zeros(self.reference.known.cells.shape, np.bool_)  # [H, W], where known to be
         self.distance: Array = np.full(self.blocked.shape, FAR, np.int32)  # [H, W], from the goal
         self.settled = -1  # distances up to this one are known for all cells
-        self.reference: AStarAgent = AStar().start(task, np.random.default_rng(0))
         self.judged = 0
         self.wrong = 0
         self.strict_wrong = 0
@@ -42,19 +41,20 @@ class GridJudge:
 
     def _update(self, observation: Observation) -> None:
         """Bring the distances from the goal up to date, as far out as the agent's cell."""
-        touched = self.known.update(observation)
-        changed = _copy_walls(self.known.cells.reshape(-1), touched, self.blocked.reshape(-1))
-        if changed or self.distance[observation.place] > self.settled:
-            self.distance = distances(self.blocked, self.goal, observation.place)
-            self.settled = int(self.distance[observation.place])
+        known, place = self.reference.known.cells, observation.place
+        changed = _copy_walls(known, place, len(observation.view) // 2, self.blocked)
+        if changed or self.distance[place] > self.settled:
+            self.distance = distances(self.blocked, self.goal, place)
+            self.settled = int(self.distance[place])
 
 
 @kernel
-def _copy_walls(known: Array, touched: Array, blocked: Array) -> bool:
-    """Write which of the `touched` cells are blocked, all maps flat [H * W]; whether that changed anything."""
+def _copy_walls(known: Array, place: Cell, reach: int, blocked: Array) -> bool:
+    """Write which of the cells in view from `place` are known to be blocked; whether that changed anything."""
     changed = False
-    for cell in touched:
-        wall = known[cell] == BLOCKED
-        changed |= wall != blocked[cell]
-        blocked[cell] = wall
+    for r in range(max(0, place[0] - reach), min(known.shape[0], place[0] + reach + 1)):
+        for c in range(max(0, place[1] - reach), min(known.shape[1], place[1] + reach + 1)):
+            wall = known[r, c] == BLOCKED
+            changed |= wall != blocked[r, c]
+            blocked[r, c] = wall
     return changed
