@@ -4,6 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bench.document import parse
+from bench.overlays import pages, settle, unknown_variants
+from bench.positions import Fault
+from bench.reading import Reading
+from worlds.mistake import Mistake
 from worlds.types import AgentSettings, MapFamily
 
 
@@ -50,7 +55,7 @@ class Scenario:
     """Why none of it runs here (a map file's environment variable is not set); empty if it does."""
 
 
-class ScenarioError(ValueError):
+class ScenarioError(Mistake):
     """A file with mistakes; `lines` has one `file:line:column  path: got X; expected Y.` for each, in order."""
 
     def __init__(self, lines: list[str]) -> None:
@@ -69,4 +74,32 @@ def read_scenario(text: str, path: Path) -> Scenario:
     Raises:
         ScenarioError: all the mistakes of the file.
     """
-    raise NotImplementedError
+    faults: list[Fault] = []
+    page = parse(text, faults)
+    if page is None:
+        raise _error(faults, path)
+    rows = {name: Reading(row, path.parent) for name, row in pages(page, faults).items()}
+    faults += settle([row.faults for row in rows.values()]) + unknown_variants(page, list(rows))
+    if faults:
+        raise _error(faults, path)
+    name, about = (str(value.content) if (value := page.child(key)) else "" for key in ("name", "about"))
+    published = next(iter(rows.values())).published
+    unset = next((value.unset for value in page.below() if value.unset), "")
+    if unset:
+        return Scenario(path, text, name, about, (), published, f"environment variable {unset} is not set")
+    variants = tuple(_variant(name, row) for name, row in rows.items())
+    return Scenario(path, text, name, about, variants, published, "")
+
+
+def _error(faults: list[Fault], path: Path) -> ScenarioError:
+    lines = [fault.text(str(path)) for fault in sorted(faults, key=lambda fault: (fault.line, fault.column))]
+    return ScenarioError(list(dict.fromkeys(lines)))
+
+
+def _variant(name: str, row: Reading) -> Variant:
+    """A variant of which everything could be read."""
+    assert row.page is not None
+    assert row.family is not None
+    agents = tuple(Entry(*agent) for agent in row.agents)
+    reference = row.page.reference or agents[0].label
+    return Variant(name, row.family, row.conditions, agents, reference, row.page.episodes, row.page.seed)

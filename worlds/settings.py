@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInf
 class Settings(BaseModel):
     """A block of a scenario: frozen, hashable, and closed to fields it does not know."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
 
 
 def _ascending(bounds: tuple[int, int]) -> tuple[int, int]:
@@ -35,8 +35,13 @@ PositiveRange = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
 
 
 def _locate(path: Path, info: ValidationInfo) -> Path:
-    return Path((info.context or {}).get("folder", ""), path)
+    if not info.context:
+        return path
+    place = Path(info.context["folder"], path).absolute()
+    if not place.exists():
+        raise ValueError(f"an existing file (looked for {place})")
+    return place
 
 
 MapFile = Annotated[Path, AfterValidator(_locate)]
-"""A file; a relative path starts at the scenario's folder (validation context `folder`), or at where one stands."""
+"""A file; a relative path starts at the scenario's folder (validation context `folder`), where it must exist."""

@@ -1,0 +1,56 @@
+"""The keys of a scenario file."""
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, ConfigDict, Field
+
+from worlds.settings import Positive, Settings
+
+
+def _file_name(name: str) -> str:
+    if not name or set(name) & set('/\\:*?"<>|') or name.startswith("."):
+        raise ValueError("a name that a folder can have")
+    return name
+
+
+class Published(Settings):
+    """Numbers to print beside the measured ones: each metric by the agent's label and the variant's name."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, dict[str, dict[str, float]]]
+
+    source: str
+    """Where they were published."""
+
+
+class Page(Settings):
+    """A scenario: maps, the conditions on them, and the agents that meet there."""
+
+    name: Annotated[str, AfterValidator(_file_name)]
+    """Its name in tables, and of the folder of its results."""
+    about: str = ""
+    """One sentence."""
+    maps: dict[str, Any]
+    """One map family with its settings."""
+    sensor: Any = None
+    rules: Any = None
+    tasks: Any = None
+    budget: Any = None
+    variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
+    """Name to what differs from the rest: mappings merge, lists and scalars replace. Each is a row of the tables."""
+    agents: Annotated[list[Any], Field(min_length=1)]
+    """Names, or `name: settings` where it has any; `label` among the settings renames it in tables."""
+    reference: str | None = None
+    """Label of the agent that the others are compared with in pairs; by default the first."""
+    episodes: Positive
+    """Episodes for each variant and agent."""
+    seed: int = 0
+    """Fixes all luck; another seed, other maps."""
+    published: Published | None = None
+
+
+CONDITIONS = ("sensor", "rules", "tasks", "budget")
+"""Keys that the kind of world reads."""
+
+ONCE = ("name", "about", "variants", "published")
+"""Keys that a variant cannot have."""
