@@ -12,8 +12,9 @@ from worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
 class GridJudge:
     """Follows one agent's known map and counts its wrong decisions.
 
-    A decision is judged while the known map, unknown counted as free, has a path to the goal. It is *wrong* when no
-    shortest path there begins with it, and *strictly wrong* when A* would decide otherwise.
+    A decision is judged while the known map, unknown counted as free, has a path to the goal, and the agent is not
+    there yet (a tunnel's goal may not count yet). It is *wrong* when no shortest path there begins with it, and
+    *strictly wrong* when A* would decide otherwise.
     """
 
     def __init__(self, task: Task) -> None:
@@ -32,7 +33,7 @@ class GridJudge:
         reference = self.reference.act(observation)
         self._update(observation)
         left = int(self.distance[observation.place])
-        if left == FAR or self.blocked[self.goal]:
+        if left in {0, FAR} or self.blocked[self.goal]:
             return
         self.judged += 1
         self.strict_wrong += move is not reference
