@@ -38,11 +38,6 @@ def read_header(path: Path, contents: bytes) -> Header:
     """The contents of a `.yaml` file."""
     try:
         return Header.model_validate(yaml.safe_load(contents))
-    except yaml.YAMLError as error:
-        line = (
-            f"{error.problem_mark.line + 1}" if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark else "1"
-        )
-        raise MapError(f"{path}:{line}: got text that is no YAML; expected lines such as 'negate: 0'") from None
     except ValidationError as errors:
         first = errors.errors()[0]
         place = ".".join(map(str, first["loc"]))
@@ -50,6 +45,10 @@ def read_header(path: Path, contents: bytes) -> Header:
             raise MapError(f"{path}: got no {place!r}; expected {', '.join(Header.model_fields)}") from None
         wanted = first["msg"].removeprefix("Input should be ")
         raise MapError(f"{path}: {place or 'all'}: got {str(first['input'])[:40]!r}; expected {wanted}") from None
+    except (yaml.YAMLError, ValueError) as error:  # ValueError: a date that is none
+        mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
+        line = mark.line + 1 if mark else 1
+        raise MapError(f"{path}:{line}: got text that is no YAML; expected lines such as 'negate: 0'") from None
 
 
 def read_image(path: Path, contents: bytes) -> Array:

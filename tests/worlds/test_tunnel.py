@@ -116,11 +116,12 @@ def test_posts_are_where_the_end_wall_is_in_view(radius: int, occlusion: bool, p
 
 def plugs(blocked: Array, width: int) -> Iterator[tuple[Array, Array]]:
     """Rows and columns of every straight line of `width` free cells with a blocked cell at either end."""
-    rows, columns = np.indices(blocked.shape)
-    for line in [*zip(rows, columns, strict=True), *zip(rows.T, columns.T, strict=True)]:
-        for a, b in pairwise(np.flatnonzero(blocked[line])):
-            if b - a == width + 1:
-                yield line[0][a + 1 : b], line[1][a + 1 : b]
+    cells: Array = np.indices(blocked.shape)  # [2, H, W]
+    for lines in (cells, cells.swapaxes(1, 2)):
+        for rows, columns in lines.swapaxes(0, 1):
+            for a, b in pairwise(np.flatnonzero(blocked[rows, columns])):
+                if b - a == width + 1:
+                    yield rows[a + 1 : b], columns[a + 1 : b]
 
 
 def corridor(blocked: Array, goal: Cell, width: int) -> Array:
