@@ -17,13 +17,13 @@ from bench.curves import Bin, Steps, by_distance, distance_bins, success_by_seco
 from bench.panels import STYLE, Looks, legend, looks_of, panels_of, percent
 from bench.scenario import Scenario
 from bench.tables import scaled
+from worlds.types import Array
 
 Frames = Mapping[str, pd.DataFrame]
 """The episodes of each variant."""
 
 LENGTHS = {"grid": "cells", "graph": "edges", "robot": "m"}
 """The unit of length, by the kind of world."""
-
 
 LEAST_MEMORY = 256
 """The axis of memory is logarithmic above, so that agents that carry nothing have a place too [bytes]."""
@@ -96,7 +96,7 @@ def success_against_seconds(frames: Frames, looks: Looks) -> Figure:
         curves = {agent: success_by_seconds(cell) for agent, cell in _cells(episodes, looks)}
         spent = np.concatenate([[], *(curve.budget for curve in curves.values())])
         axes.set_xscale("log")
-        _staircases(axes, curves, looks, *((spent.min() / 2, spent.max() * 2) if len(spent) else (1e-3, 1.0)))
+        _staircases(axes, curves, looks, *_around(spent))
     return figure
 
 
@@ -137,13 +137,17 @@ def _dots(table: pd.DataFrame, metrics: Sequence[str], looks: Looks) -> tuple[Fi
             at = rows["variant"].map(variants.index) + 0.8 * ((k + 0.5) / len(looks) - 0.5)
             reach = np.maximum(0, [rows["value"] - rows["low"], rows["high"] - rows["value"]])  # [2, variants]
             axes.errorbar(at, rows["value"], reach, color=look.color, marker=look.marker, linestyle="", capsize=2)
-        axes.set_xticks(range(len(variants)), variants)
-        axes.set_xlim(-0.5, len(variants) - 0.5)
-        axes.grid(visible=False, axis="x")
-        for border in range(1, len(variants)):
-            axes.axvline(border - 0.5, color="#E5E5E5", linewidth=0.6, zorder=0)
+        _side_by_side(axes, variants)
     legend(figure, looks, lines=False)
     return figure, panels
+
+
+def _side_by_side(axes: Axes, variants: Sequence[str]) -> None:
+    axes.set_xticks(range(len(variants)), variants)
+    axes.set_xlim(-0.5, len(variants) - 0.5)
+    axes.grid(visible=False, axis="x")
+    for border in range(1, len(variants)):
+        axes.axvline(border - 0.5, color=STYLE["grid.color"], linewidth=STYLE["grid.linewidth"], zorder=0)
 
 
 def _staircases(axes: Axes, curves: Mapping[str, Steps], looks: Looks, left: float, right: float) -> None:
@@ -153,6 +157,12 @@ def _staircases(axes: Axes, curves: Mapping[str, Steps], looks: Looks, left: flo
         axes.step(at, height, where="post", markevery=[-1], clip_on=False, **looks[agent]._asdict())
     axes.set_xlim(left, right)
     percent(axes)
+
+
+def _around(seconds: Array) -> tuple[float, float]:
+    """Ends of a logarithmic axis for all of `seconds` [n] that are more than nothing."""
+    seconds = seconds[seconds > 0]
+    return (seconds.min() / 2, seconds.max() * 2) if len(seconds) else (1e-3, 1.0)
 
 
 def _cells(episodes: pd.DataFrame, looks: Looks) -> Iterator[tuple[str, pd.DataFrame]]:

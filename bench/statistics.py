@@ -8,7 +8,8 @@ Words used here
 All intervals have a confidence of 95 %. The bootstrap starts from a fixed seed: the same episodes give the same bits.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,8 +18,8 @@ from scipy import stats
 from worlds.types import Array
 
 CONFIDENCE = 0.95
-RESAMPLES = 2000
-BATCH = 1_000_000
+RESAMPLES = 1000
+BATCH = 100_000
 """Numbers that the bootstrap draws at a time: what it needs of memory does not grow with the episodes."""
 
 
@@ -45,27 +46,36 @@ def share(hits: ArrayLike) -> Estimate:
 
 
 def mean(values: ArrayLike) -> Estimate:
-    """The mean of `values` [n] float, NaN left out, with a bootstrap interval."""
-    return ratio_of_sums(values, np.ones(len(np.asarray(values))))
+    """The mean of `values` [n] float, with a bootstrap interval; NaN is left out."""
+    numbers = np.array([values], np.float64)  # [1, n]
+    return _bootstrap(numbers[:, np.isfinite(numbers[0])], np.mean)
 
 
 def ratio_of_sums(over: ArrayLike, under: ArrayLike) -> Estimate:
-    """The sum of `over` through the sum of `under`, [n] float each, with a bootstrap interval over episodes.
+    """The sum of `over` through the sum of `under`, [n] float each, with a bootstrap interval.
 
-    An episode with NaN, or with nothing in `under`, is left out. The interval is the percentile bootstrap (Efron 1979):
-    whole episodes are drawn, so decisions within an episode need not be independent. One episode has no interval.
+    An episode with NaN, or with nothing in `under`, is left out. Whole episodes are drawn, so decisions within an
+    episode need not be independent.
     """
     sums = np.array([over, under], np.float64)  # [2, n]
-    sums = sums[:, np.isfinite(sums[0]) & (sums[1] > 0)]
-    n = sums.shape[1]
+    return _bootstrap(sums[:, np.isfinite(sums[0]) & (sums[1] > 0)], _ratio)
+
+
+def _ratio(over: Array, under: Array, axis: int = -1) -> Array:
+    return np.asarray(over.sum(axis) / under.sum(axis))
+
+
+def _bootstrap(samples: Array, statistic: Callable[..., Any]) -> Estimate:
+    """`statistic` of `samples` [k, n] with the percentile interval of Efron (1979); one episode has none."""
+    n = samples.shape[1]
     if n == 0:
         return Estimate()
-    value = float(_ratio(*sums))
+    value = float(statistic(*samples))
     if n == 1:
         return Estimate(value, n=1)
     drawn = stats.bootstrap(
-        sums,
-        _ratio,
+        samples,
+        statistic,
         paired=True,
         vectorized=True,
         n_resamples=RESAMPLES,
@@ -75,10 +85,6 @@ def ratio_of_sums(over: ArrayLike, under: ArrayLike) -> Estimate:
         rng=0,
     )
     return Estimate(value, float(drawn.confidence_interval.low), float(drawn.confidence_interval.high), n)
-
-
-def _ratio(over: Array, under: Array, axis: int = -1) -> Array:
-    return np.asarray(over.sum(axis) / under.sum(axis))
 
 
 def difference(ours: Array, theirs: Array) -> Estimate:
@@ -105,7 +111,7 @@ def discordant(ours: Array, theirs: Array) -> tuple[int, int]:
 def mcnemar(b: int, c: int) -> float:
     """Two-sided mid-p of McNemar's test for paired success (Fagerland, Lydersen & Laake 2013, equation 5)."""
     fewer, n = min(b, c), b + c
-    return float(2 * stats.binom.cdf(fewer, n, 0.5) - stats.binom.pmf(fewer, n, 0.5))
+    return min(1.0, float(2 * stats.binom.cdf(fewer, n, 0.5) - stats.binom.pmf(fewer, n, 0.5)))
 
 
 def holm(p: ArrayLike) -> Array:
