@@ -98,9 +98,11 @@ def replay(
 
     Drawn are the truth, what the agent had seen by then, its current view, and its path.
     """
-    from bench.session import replay_one
+    from bench.playback import replay_recorded
+    from bench.session import read_all
 
-    replay_one(*_scenarios([scenario]), agent, variant, episode, out, results)
+    (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
+    typer.echo(replay_recorded(chosen, variant, agent, episode, results / chosen.name, out))
 
 
 @app.command()

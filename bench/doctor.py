@@ -27,12 +27,18 @@ def examine() -> None:
 
 def _packages() -> Table:
     table = Table("package", "installed", "needed for", title="Packages")
-    for line in requires(PROJECT) or ():
-        need = Requirement(line)
+    for need in map(Requirement, _requirements()):
         extra = str(need.marker).rpartition("extra == ")[2].strip('"') if need.marker else ""
         missing = f'missing: pip install "{PROJECT}\\[{extra}]"' if extra else "missing: pip install " + PROJECT
         table.add_row(need.name, _version(need.name) or missing, f"the extra {extra}" if extra else "everything")
     return table
+
+
+def _requirements() -> list[str]:
+    try:
+        return requires(PROJECT) or []
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return []
 
 
 def _version(name: str) -> str:
@@ -44,7 +50,7 @@ def _version(name: str) -> str:
 
 def _machine() -> Table:
     table = Table("what", "value", title="Machine")
-    table.add_row("fogbench", _version(PROJECT))
+    table.add_row(PROJECT, _version(PROJECT) or "not installed, run from a checkout")
     table.add_row("Python", f"{platform.python_version()} ({sys.executable})")
     table.add_row("system", f"{platform.system()} {platform.machine()}")
     table.add_row("CPUs at hand", str(len(os.sched_getaffinity(0))))

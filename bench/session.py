@@ -1,9 +1,10 @@
-"""What the commands do with scenario files: run them, check them, report on them, replay an episode."""
+"""What the commands do with scenario files: run them, check them, report on them."""
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 from rich.console import Console
@@ -50,8 +51,8 @@ def check_all(paths: Sequence[Path]) -> None:
     for scenario in read_all(paths, None):
         if _introduce(scenario, console):
             _refuse_too_many(scenario)
-            for variant in scenario.variants:
-                console.print(_outlook(variant), highlight=False)
+            for line in chain.from_iterable(map(_outlook, scenario.variants)):
+                console.print(line, highlight=False)
 
 
 def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
@@ -77,20 +78,6 @@ def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
     if lines:
         raise ScenarioError(lines)
     return [_with_episodes(scenario, episodes) if episodes else scenario for scenario in scenarios.values()]
-
-
-def find_variant(scenario: Scenario, name: str | None) -> Variant:
-    """A variant by its name; None: the first.
-
-    Raises:
-        Mistake: the scenario does not run here, or has no such variant.
-    """
-    if scenario.skipped:
-        raise Mistake(f"{scenario.name}: {scenario.skipped}.")
-    for variant in scenario.variants:
-        if name in (None, variant.name):
-            return variant
-    raise Mistake(f"--variant: got {name}; expected one of {', '.join(each.name for each in scenario.variants)}.")
 
 
 def _text(path: Path) -> str:
@@ -123,15 +110,18 @@ def _refuse_too_many(scenario: Scenario) -> None:
             )
 
 
-def _outlook(variant: Variant) -> str:
+def _outlook(variant: Variant) -> Iterator[str]:
     from bench.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
 
     world = episode_world(variant, 0)
-    labels = [entry.label for entry in variant.agents if not entry.skipped]
-    return (
-        f"  {variant.name}: {variant.episodes} episodes of {len(labels)} agents ({', '.join(labels)}); the first has "
-        f"an optimum of {world.shortest():g} and a budget of {world.task.budget.steps} steps"
+    playing = sum(not entry.skipped for entry in variant.agents)
+    yield (
+        f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "
+        f"the first has an optimum of {world.shortest():g} and a budget of {world.task.budget.steps} steps"
     )
+    for entry in variant.agents:
+        if entry.skipped:
+            yield f"    {entry.label} is skipped: {entry.skipped}"
 
 
 def _counts(summary: Summary) -> str:
