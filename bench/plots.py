@@ -76,6 +76,8 @@ def path_ratio(table: pd.DataFrame, looks: Looks) -> Figure:
     figure, panels = _dots(table, ("path_ratio", "reference_ratio"), looks)
     for axes, other in zip(panels, ("optimum", "A* on the map seen"), strict=True):
         axes.axhline(1, color="#888888", linewidth=0.8, zorder=1)
+        low, high = axes.get_ylim()
+        axes.set_ylim(min(low, 0.99), max(high, 1.05))  # a narrower axis would make much of nothing
         axes.set_ylabel(f"length / {other}")
     return figure
 

@@ -24,6 +24,9 @@ READS = (
 COLUMNS = ("scenario", "variant", "agent", "metric", "value", "low", "high", "n", "unit")
 """The columns of `summary.csv`."""
 
+WIDTH = 120
+"""Columns of text that a table takes even where the terminal has fewer, or a pipe pretends to have 80."""
+
 
 def summary(frame: pd.DataFrame, scenario: Scenario) -> pd.DataFrame:
     """Every metric of every agent in every variant, and its comparison with the reference agent, each in one row.
@@ -64,11 +67,14 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
 
 
 def print_tables(table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
-    """Print what a summary says: the results, the comparisons, and who was skipped."""
-    console.print(terminal("Results", headline(table, scenario, short=True)))
-    for title, lines in (("Paired", comparisons(table, scenario)), ("Skipped", skipped(scenario))):
+    """Print what a summary says: the results, the comparisons, and who was skipped; nothing is cut off."""
+    for title, lines in (
+        ("Results", headline(table, scenario, short=True)),
+        ("Paired", comparisons(table, scenario)),
+        ("Skipped", skipped(scenario)),
+    ):
         if lines.rows:
-            console.print(terminal(title, lines))
+            console.print(terminal(title, lines, WIDTH if console.width < WIDTH else None), crop=False)
 
 
 def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...]]:

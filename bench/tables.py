@@ -66,10 +66,13 @@ def markdown(lines: Lines) -> str:
     return "".join(f"| {' | '.join(row)} |\n" for row in padded)
 
 
-def terminal(title: str, lines: Lines) -> RichTable:
-    """The table for a terminal. A rule stands where the first column changes; the second and the last give way."""
+def terminal(title: str, lines: Lines, width: int | None = None) -> RichTable:
+    """The table for a terminal, as wide as it needs to be, or of `width`.
+
+    A gap stands where the first column changes. If space is short, the second and the last column give way.
+    """
     look: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "box": SIMPLE_HEAD, "show_edge": False}
-    table = RichTable(title=f"\n{title}", padding=0, **look)
+    table = RichTable(title=f"\n{title}", padding=0, width=width, **look)
     for k, text in enumerate(lines.headings):
         table.add_column(text.replace(" ", "\n"), no_wrap=k not in {1, len(lines.headings) - 1}, overflow="fold")
     for row, after in zip(lines.rows, [*lines.rows[1:], None], strict=True):

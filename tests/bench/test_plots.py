@@ -123,3 +123,13 @@ def test_drawing_leaves_the_settings_of_matplotlib_alone(frame: pd.DataFrame, ma
     before = {name: mpl.rcParams[name] for name in mpl.rcParams}
     draw(frame, summary(frame, make()), make(), tmp_path)
     assert {name: mpl.rcParams[name] for name in mpl.rcParams} == before
+
+
+def test_an_axis_of_ratios_makes_nothing_of_noise(frame: pd.DataFrame, make: Make) -> None:
+    """However close to 1 the ratios are, the axis reaches from 0.99 to 1.05 at least, in plain numbers."""
+    frame["length"] = frame["shortest"] * 1.0001
+    axes = figures(frame, make())["path_ratio.png"].axes[0]
+    low, high = axes.get_ylim()
+    assert low <= 0.99
+    assert high >= 1.05
+    assert axes.yaxis.get_major_formatter().get_useOffset() is False
