@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, resource_tracker
@@ -20,7 +21,7 @@ ONE_THREAD = dict.fromkeys(
 
 def cpus() -> int:
     """How many CPUs this process may use."""
-    return len(os.sched_getaffinity(0))
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
 @contextmanager

@@ -61,7 +61,7 @@ def _now() -> str:
 
 def _circumstances() -> dict[str, Any]:
     return {
-        "command": shlex.join(sys.argv),
+        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
         "commit": _commit(),
         "cpu": _cpu(),
         "cores": os.cpu_count(),

@@ -28,6 +28,9 @@ from worlds.types import MapError, Outcome
 AHEAD = 4
 """Tasks that are handed out for each worker, so that none waits for its next."""
 
+PATIENCE = 300.0
+"""Seconds that the facts of a lost episode's world may take, whatever its limit: a new process may compile first."""
+
 Recorded = dict[tuple[str, str], set[int]]
 """The recorded episodes of each (variant, agent)."""
 
@@ -168,7 +171,7 @@ def _answer(future: Future[Episode], job: Job) -> Episode | Job:
         raise RunError(f"{place}, {job.agent}: got {type(error).__name__}: {error}; expected no error but an agent's.")
     if job.loss:
         raise RunError(f"{place}: {loss[1]}; expected its world to be made.")
-    return job._replace(loss=loss)
+    return job._replace(loss=loss, hard_seconds=PATIENCE)
 
 
 def _death(code: int) -> str:
