@@ -136,3 +136,15 @@ def test_outcomes_do_not_depend_on_the_judge(draw: Callable[..., GridWorld]) -> 
         records[-1].outcome = roll(world, agent, np.random.default_rng(3), records[-1], judge)
         records[-1].decision_seconds = []
     assert records[0] == records[1]
+
+
+def test_a_goal_that_reads_blocked_is_not_judged(draw: Callable[..., GridWorld]) -> None:
+    """After a false reading of the goal no path leads there, until a later reading frees it."""
+    world = draw("S.\n.G")
+    judge, true = GridJudge(world.task), world.sense(world.reset(), np.random.default_rng(0))
+    false = true.view.copy()
+    false[2, 2] = BLOCKED
+    judge.see(true._replace(view=false), Move.DOWN)
+    assert counts(judge) == (0, 0, 0)
+    judge.see(true, Move.DOWN)
+    assert counts(judge) == (1, 0, 0)
