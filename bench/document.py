@@ -17,19 +17,28 @@ SHOWN = 60
 
 
 def parse(text: str, faults: list[Fault]) -> Value | None:
-    """The one document of a file; None where it is not YAML. What is wrong with it is added to `faults`."""
+    """The mapping that a file is; None where it is none. What is wrong with it is added to `faults`."""
+    node = _compose(text, faults)
+    page = _Document(text, faults).value(node, "", None, ()) if node else None
+    if page is None or isinstance(page.content, dict):
+        return page
+    faults.append(page.wrong("a mapping"))
+    return None
+
+
+def _compose(text: str, faults: list[Fault]) -> yaml.Node | None:
     try:
         node = yaml.compose(text, yaml.SafeLoader)
     except yaml.MarkedYAMLError as error:
-        problem = " ".join((error.problem or "").removeprefix("but ").split())
+        problem = (error.problem or "").removeprefix("but ")
         faults.append(_broken(_spot(error.problem_mark), problem))
     except yaml.reader.ReaderError as error:
         before = text[: error.position].split("\n")
         faults.append(_broken(Spot(len(before), len(before[-1]) + 1), f"{error.reason}: {chr(error.character)!r}"))
     else:
-        if node is not None:
-            return _Document(text, faults).value(node, "", None, ())
-        faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
+        if node is None:
+            faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
+        return node
     return None
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from bench.blocks import near, one_of
-from bench.page import ONCE, Page
+from bench.page import VARIED
 from bench.positions import Fault, Value, merge
 
 ALONE = "all"
@@ -15,17 +15,19 @@ def pages(page: Value, faults: list[Fault]) -> dict[str, Value]:
     variants = page.fields().get("variants")
     overlays = variants.fields() if variants else {}
     for overlay in overlays.values():
-        keys = [key for key in Page.model_fields if key not in ONCE]
-        faults.extend(overlay.wrong_key(key, one_of(keys)) for key in overlay.fields() if key in ONCE)
+        unknown = overlay.fields().keys() - VARIED
+        faults.extend(overlay.wrong_key(key, one_of(VARIED), near(key, VARIED)) for key in unknown)
     return {name: _lay(page, overlay) for name, overlay in overlays.items()} or {ALONE: page}
 
 
 def _lay(page: Value, overlay: Value) -> Value:
     """The page of one variant: another map family replaces the one of the page, with all its settings."""
-    fields = {key: value for key, value in overlay.fields().items() if key not in ONCE}
-    here, there = page.fields().get("maps"), fields.get("maps")
-    if here and there and not here.fields().keys() & there.fields().keys():
-        page = replace(page, content=page.fields() | {"maps": there})
+    fields = {key: value for key, value in overlay.fields().items() if key in VARIED}
+    here, there = (
+        mapping["maps"].fields().keys() if "maps" in mapping else set() for mapping in (page.fields(), fields)
+    )
+    if there and not here & there:
+        page = replace(page, content={key: value for key, value in page.fields().items() if key != "maps"})
     return merge(page, replace(overlay, content=fields))
 
 

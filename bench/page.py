@@ -52,5 +52,5 @@ class Page(Settings):
 CONDITIONS = ("sensor", "rules", "tasks", "budget")
 """Keys that the kind of world reads."""
 
-ONCE = ("name", "about", "variants", "published")
-"""Keys that a variant cannot have."""
+VARIED = tuple(key for key in Page.model_fields if key not in ("name", "about", "variants", "published"))
+"""Keys that a variant may have."""

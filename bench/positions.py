@@ -80,8 +80,9 @@ class Value:
         return Fault(*self.spot, self.path, self.written, expected, near)
 
     def wrong_key(self, key: str, expected: str, near: str = "") -> Fault:
-        """One of its keys should be something else."""
-        return Fault(*self.fields()[key].key, self.path, key, expected, near)
+        """One of its keys should be something else; it may stand in the mapping that this one was merged over."""
+        child = self.fields()[key]
+        return Fault(*child.key, child.path.removesuffix(key).removesuffix("."), key, expected, near)
 
     def lacks(self, key: str, expected: str) -> Fault:
         """A key is missing."""

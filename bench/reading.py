@@ -51,7 +51,8 @@ class Reading:
         if maps is None or not isinstance(maps.content, dict):
             return None
         if len(maps.content) != 1:
-            self.faults.append(maps.wrong("a mapping with one map family"))
+            several = maps.base if maps.base and len(maps.base.fields()) != 1 else maps
+            self.faults.append(several.wrong("a mapping with one map family"))
             return None
         ((name, block),) = maps.content.items()
         wrong = partial(maps.wrong_key, name)
@@ -99,11 +100,10 @@ class Reading:
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""
         said = block.child("label")
+        label = str(said.content) if said else name.rpartition(":")[2]
         if said and not isinstance(said.content, str):
             self.faults.append(said.wrong("text"))
-            said = None
-        label = str(said.content) if said else name.rpartition(":")[2]
-        if label in self.lines:
+        elif label in self.lines:
             expected = f"a label of its own ({label} is taken on line {self.lines[label]})"
             self.faults.append((said or item).wrong(expected))
         self.lines.setdefault(label, (said or item).spot.line)

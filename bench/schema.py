@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from bench.page import CONDITIONS, ONCE, Page
+from bench.page import CONDITIONS, VARIED, Page
 from bench.plugins import AGENT, FAMILY, KIND, MissingPackageError, PluginError, Table, load
 from bench.shapes import Lenient, Schema
 from worlds.settings import Settings
@@ -26,7 +26,7 @@ def schema() -> Schema:
     fields: dict[str, Any] = {key: (field.annotation, field) for key, field in known.items()} | _conditions()
     fields["maps"] = (_one_of_many("Maps", _classes(FAMILY)), known["maps"])
     fields["agents"] = (_agents(), known["agents"])
-    variant = _model("Variant", {key: field for key, field in fields.items() if key not in ONCE}, Settings)
+    variant = _model("Variant", {key: field for key, field in fields.items() if key in VARIED}, Settings)
     fields["variants"] = (GenericAlias(dict, (str, variant | None)), known["variants"])
     page = _model("Scenario", fields, Page).model_json_schema(schema_generator=Lenient)
     return {"$schema": DRAFT, **_relax(page), "required": ["name"]}
