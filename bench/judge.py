@@ -31,22 +31,23 @@ class GridJudge:
     def see(self, observation: Observation, move: Move) -> None:
         """Judge the decision `move`, taken on `observation`."""
         reference = self.reference.act(observation)
-        self._update(observation)
-        left = int(self.distance[observation.place])
+        left = self._left(observation)
         if left in {0, FAR} or self.blocked[self.goal]:
             return
         self.judged += 1
         self.strict_wrong += move is not reference
-        ahead = (observation.place[0] + move.delta[0], observation.place[1] + move.delta[1])
+        down, right = move.delta
+        ahead = (observation.place[0] + down, observation.place[1] + right)
         self.wrong += not (passable(self.blocked, *ahead) and self.distance[ahead] == left - 1)
 
-    def _update(self, observation: Observation) -> None:
-        """Bring the distances from the goal up to date, as far out as the agent's cell."""
+    def _left(self, observation: Observation) -> int:
+        """The agent's distance from the goal; all distances up to this one are brought up to date."""
         known, place = self.reference.known.cells, observation.place
         changed = _copy_walls(known, place, len(observation.view) // 2, self.blocked)
         if changed or self.distance[place] > self.settled:
             self.distance = distances(self.blocked, self.goal, place)
             self.settled = int(self.distance[place])
+        return int(self.distance[place])
 
 
 @kernel

@@ -5,7 +5,9 @@ from typing import ClassVar
 import numpy as np
 
 from worlds.settings import Settings
-from worlds.types import BLOCKED, Move, Observation, Task
+from worlds.types import BLOCKED, DELTAS, Move, Observation, Task
+
+MOVES = tuple(zip(Move, DELTAS, strict=True))
 
 
 class RandomWalk(Settings):
@@ -34,7 +36,8 @@ class RandomWalkAgent:
         """A random move; gives up where all four are seen to be blocked."""
         middle = len(observation.view) // 2
         luck = self.rng.random()  # drawn even where there is no choice, so that the stream never shifts
-        moves = [move for move in Move if observation.view[middle + move.delta[0], middle + move.delta[1]] != BLOCKED]
+        view = observation.view
+        moves = [move for move, (down, right) in MOVES if view[middle + down, middle + right] != BLOCKED]
         return moves[int(luck * len(moves))] if moves else None
 
     def memory_bytes(self) -> int:

@@ -92,7 +92,8 @@ class GridWorld:
         move, slipped = self._slip(action, rng)
         place, stopped = state.place, False
         if move is not None:
-            ahead = (place[0] + move.delta[0], place[1] + move.delta[1])
+            down, right = move.delta
+            ahead = (place[0] + down, place[1] + right)
             stopped = not passable(self.blocked, *ahead)
             place = place if stopped else ahead
         witnessed = state.witnessed or self._witnesses(place)
