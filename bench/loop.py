@@ -50,7 +50,7 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
     record = Record()
     try:
         _warm_up(variant, entry)
-        _start_and_roll(world, entry.settings, variant, episode, record, judge)
+        start_and_roll(world, entry.settings, variant, episode, record, judge)
     except (Exception, SystemExit) as error:  # noqa: BLE001  an agent may raise anything
         record.outcome, record.detail = Outcome.CRASHED, _sentence(error)
     return _episode(scenario, variant, entry, episode, workers, record, judge)
@@ -93,9 +93,10 @@ def roll(world: World, agent: Agent, luck: np.random.Generator, record: Record, 
             return Outcome.OUT_OF_MEMORY
 
 
-def _start_and_roll(
+def start_and_roll(
     world: World, settings: AgentSettings, variant: Variant, episode: int, record: Record, judge: GridJudge | None
 ) -> None:
+    """One bare episode, from the start of the agent, written into `record` as it goes on."""
     luck, own = (episode_stream(variant, purpose, episode) for purpose in ("luck", "agent"))
     record.parameter_bytes = _count(settings.parameter_bytes(), "parameter_bytes")
     began = perf_counter()
@@ -139,7 +140,7 @@ def _reference_length(world: World, variant: Variant, episode: int) -> float | N
     if world.task.kind not in AStar.kinds:
         return None
     record = Record()
-    _start_and_roll(world, AStar(), variant, episode, record, None)
+    start_and_roll(world, AStar(), variant, episode, record, None)
     return record.length if record.outcome is Outcome.REACHED else None
 
 
