@@ -16,8 +16,8 @@ app = typer.Typer(
     add_completion=False,
 )
 
-DONE, CRASHED, WRONG = 0, 1, 2
-"""Exit codes: done; finished, but an agent crashed or hung; the command or a file was wrong."""
+DONE, CRASHED, WRONG, STOPPED = 0, 1, 2, 130
+"""Exit codes: done; finished, but an agent crashed or hung; the command or a file was wrong; stopped by Ctrl-C."""
 
 Paths = Annotated[
     list[str] | None,
@@ -47,7 +47,11 @@ def run(
     """
     from bench.session import run_all
 
-    crashed = run_all(_scenarios(scenarios), episodes, workers, results)
+    try:
+        crashed = run_all(_scenarios(scenarios), episodes, workers, results)
+    except KeyboardInterrupt:
+        typer.echo("Stopped. What was played is recorded; the same command goes on from there.", err=True)
+        raise typer.Exit(STOPPED) from None
     raise typer.Exit(CRASHED if crashed else DONE)
 
 
@@ -128,6 +132,3 @@ def main() -> None:
     except Mistake as mistake:
         typer.echo(str(mistake), err=True)
         sys.exit(WRONG)
-    except KeyboardInterrupt:
-        typer.echo("Stopped. What was played is recorded; the same command goes on from there.", err=True)
-        sys.exit(130)

@@ -51,7 +51,7 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
     try:
         _warm_up(variant, entry)
         start_and_roll(world, entry.settings, variant, episode, record, judge)
-    except (Exception, SystemExit) as error:  # noqa: BLE001  an agent may raise anything
+    except BaseException as error:  # noqa: BLE001  an agent may raise anything, and nobody else speaks to a worker
         record.outcome, record.detail = Outcome.CRASHED, _sentence(error)
     return _episode(scenario, variant, entry, episode, workers, record, judge)
 

@@ -1,7 +1,6 @@
 """From a recorded row to a verified picture."""
 
 from collections.abc import Generator
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -74,11 +73,12 @@ def _row(scenario: Scenario, variant: Variant, agent: str, episode: int, folder:
 
 def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[tuple[Array, Array, int]], End]:
     """The pictures of the chosen steps, and the end."""
-    drawn = []
-    try:
-        for step in count():
+    drawn, step = [], 0
+    while True:
+        try:
             moment = next(moments)
-            if step in steps:
-                drawn.append((truth(moment), known(moment), step))
-    except StopIteration as stop:
-        return drawn, stop.value
+        except StopIteration as stop:
+            return drawn, stop.value
+        if step in steps:
+            drawn.append((truth(moment), known(moment), step))
+        step += 1

@@ -1,6 +1,7 @@
 """Progress bars of a run: one for the scenario, and one for each agent of the variant that is being played."""
 
 from types import TracebackType
+from typing import Self
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
@@ -28,7 +29,7 @@ class Bars:
         self.agents: dict[tuple[str, str], TaskID] = {}
         self.reached: dict[tuple[str, str], int] = {}
 
-    def __enter__(self) -> "Bars":
+    def __enter__(self) -> Self:
         """Begin to draw."""
         self.bars.start()
         return self
