@@ -71,9 +71,14 @@ def _row(scenario: Scenario, variant: Variant, agent: str, episode: int, folder:
     )
 
 
-def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[tuple[Array, Array, int]], End]:
+Picture = tuple[Array, Array, int]
+"""The truth, the known map, the step."""
+
+
+def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[Picture], End]:
     """The pictures of the chosen steps, and the end."""
-    drawn, step = [], 0
+    drawn: list[Picture] = []
+    step = 0
     while True:
         try:
             moment = next(moments)
