@@ -6,6 +6,7 @@ Nothing is imported before a scenario names it.
 import ast
 import sys
 from collections.abc import Mapping
+from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
@@ -32,7 +33,7 @@ class Table(NamedTuple):
 
     def targets(self) -> dict[str, str]:
         """All names with their `module:class`; the project's own come first and cannot be replaced."""
-        others = {point.name: point.value for group in self.groups for point in entry_points(group=group)}
+        others = {name: target for group in self.groups for name, target in registered(group).items()}
         return {**self.shipped, **{name: target for name, target in others.items() if name not in self.shipped}}
 
 
@@ -52,6 +53,12 @@ class PluginError(ValueError):
 
 class MissingPackageError(Exception):
     """A plug-in that needs a package which is not installed; the text says which, and how to get it."""
+
+
+@cache
+def registered(group: str) -> dict[str, str]:
+    """The entry points of a group: name to `module:class`. They are looked for once, which takes a while."""
+    return {point.name: point.value for point in entry_points(group=group)}
 
 
 def families() -> dict[str, str]:

@@ -4,12 +4,11 @@ import multiprocessing
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 
 import pytest
 
-from bench.plugins import AGENT, agents, families, first_sentence, load, target
+from bench.plugins import AGENT, agents, families, first_sentence, load, registered, target
 from bench.scenario import Scenario, ScenarioError, read_scenario
 from planners import PLANNERS
 from worlds import FAMILIES
@@ -94,6 +93,18 @@ class Sparse(Blobs):
 class Sea(Blobs):
     kind: ClassVar[str] = "sea"
 '''
+
+POINTS = """
+[fogbench.planners]
+walker = planners.random_walk:RandomWalk
+astar = planners.random_walk:RandomWalk
+
+[fogbench.learned]
+net = planners.memoryless:Memoryless
+
+[fogbench.families]
+tubes = worlds.tunnel:Tunnel
+"""
 
 Read = Callable[..., Scenario]
 
@@ -279,18 +290,17 @@ def test_a_file_that_fails_leaves_nothing_behind(read: Read, tmp_path: Path) -> 
     assert read("./late.py:Mine").variants[0].agents[1].label == "Mine"
 
 
-def test_entry_points_of_other_packages(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_entry_points_of_other_packages(
+    read: Read, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
     """They stand beside the names of the project, and cannot take one of those."""
-    points = EntryPoints(
-        EntryPoint(name, value, group)
-        for name, value, group in (
-            ("walker", "planners.random_walk:RandomWalk", "fogbench.planners"),
-            ("net", "planners.memoryless:Memoryless", "fogbench.learned"),
-            ("astar", "planners.random_walk:RandomWalk", "fogbench.planners"),
-            ("tubes", "worlds.tunnel:Tunnel", "fogbench.families"),
-        )
-    )
-    monkeypatch.setattr("bench.plugins.entry_points", lambda group: points.select(group=group))
+    package = tmp_path / "other-1.0.dist-info"
+    package.mkdir()
+    (package / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1.0\n")
+    (package / "entry_points.txt").write_text(POINTS)
+    monkeypatch.syspath_prepend(tmp_path)
+    registered.cache_clear()
+    request.addfinalizer(registered.cache_clear)
     assert families() == {**FAMILIES, "tubes": "worlds.tunnel:Tunnel"}
     walker, net = "planners.random_walk:RandomWalk", "planners.memoryless:Memoryless"
     assert agents() == {**PLANNERS, "walker": walker, "net": net}
