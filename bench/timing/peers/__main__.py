@@ -1,0 +1,33 @@
+"""How fast we are beside others: the same work in rounds that take turns, on one thread, and the ratio of each round.
+
+    python bench/timing/peers POGEMA_PYTHON        (`tox -e peers` makes both environments and runs this)
+
+A round of ours and the next one of theirs meet the same load of the machine, so their ratio means something where the
+two figures alone do not. Said are the medians; beside the ratio its least and its most.
+"""
+
+import sys
+
+from rich.console import Console
+from rich.table import Table
+from searching import searches
+from turns import Turns
+from walking import walks
+
+
+def main() -> None:
+    """Run all comparisons and print one table."""
+    table = Table("work", "peer", "ours", "theirs", "ours is faster, times", "least to most", title="Beside others")
+    for turns in (*walks(sys.argv[1]), *searches()):
+        table.add_row(*cells(turns))
+    Console().print(table)
+
+
+def cells(turns: Turns) -> tuple[str, ...]:
+    """A row of the table."""
+    ratio, least, most = turns.ratio()
+    figures = (turns.figure(seconds) for seconds in (turns.ours, turns.theirs))
+    return turns.work, turns.peer, *figures, f"{ratio:.2f}", f"{least:.2f} to {most:.2f}"
+
+
+main()
