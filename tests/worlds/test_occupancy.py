@@ -102,6 +102,7 @@ def plain(path: Path) -> Array:
     return (grey <= 205)[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
+@pytest.mark.maps
 @pytest.mark.parametrize("name", ["maze", "office02", "office02_partially_unknown", "room02"])
 @pytest.mark.parametrize("downsample", [1, 3])
 def test_real_floors_equal_a_plain_reading(name: str, downsample: int) -> None:

@@ -151,6 +151,7 @@ def straight(cells: Array, place: Cell, steps: list[tuple[int, int]]) -> Array:
     return np.asarray(np.maximum(down, right) + (diagonal - 1) * np.minimum(down, right))
 
 
+@pytest.mark.maps
 @pytest.mark.parametrize("name", BENCHMARKS)
 def test_optima_of_real_tasks_equal_those_of_scipy(name: str) -> None:
     """For every task of a benchmark, our 4-connected optimum is what Dijkstra's search finds."""
@@ -160,6 +161,7 @@ def test_optima_of_real_tasks_equal_those_of_scipy(name: str) -> None:
     assert list(shortest(blocked, [(0, 1), (1, 0)], tasks)) == ours
 
 
+@pytest.mark.maps
 @pytest.mark.parametrize("name", BENCHMARKS)
 def test_an_octile_search_finds_the_lengths_of_the_files(name: str) -> None:
     """For every task of a benchmark, an 8-connected search on our reading of the map finds the file's own length."""
