@@ -49,16 +49,16 @@ def replan(
 
     Args:
         known: [H, W] uint8 of UNKNOWN, FREE, BLOCKED.
-        g: updated in place, as are `rhs`, `U` and `at`.
-        rhs: see the words above; so are U and at.
-        U: with `at`, which cells wait to be expanded.
-        at: zeros for an empty U.
+        g: updated in place, as are the next three; FAR everywhere before the first search.
+        rhs: FAR everywhere at first.
+        U: zeros at first.
+        at: zeros at first.
         goal: a cell.
         optimist: which of the two kinds of planner it is.
         touched: [n] int32, flat indices (row * W + column) of the cells whose reading has changed.
         start: where the agent is.
         last: the start that `k_m` belongs to.
-        k_m: see the words above.
+        k_m: 0 at first.
 
     Returns:
         `U`, moved where it has outgrown its array; `last` and `k_m`, new if any key was made; the cells expanded.
