@@ -161,7 +161,7 @@ def test_a_store_that_cannot_be_written_is_named(tmp_path: Path) -> None:
 
 
 MANY = """
-import pickle, resource, sys
+import pickle, re, sys
 from dataclasses import replace
 from pathlib import Path
 from bench.scenario import read_scenario
@@ -176,7 +176,7 @@ with recording(path.parent / "many") as recorder:
         recorder.append(replace(first, episode=episode, decision_seconds=seconds, actions=seconds))
 (found,) = recorded(path.parent / "many", scenario).values()
 assert found == set(range(100_000))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+print(int(re.search("VmHWM:\\s+([0-9]+)", Path("/proc/self/status").read_text())[1]) / 1024)
 """
 """Record 100,000 episodes of 40 decisions, read back which are there, and print the peak of memory [MiB]."""
 
