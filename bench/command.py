@@ -76,7 +76,7 @@ def schema() -> None:
     """Print the JSON Schema of scenario files, for completion and checks in editors."""
     import json
 
-    from bench.schema import schema as scenario_schema
+    from bench.reading.schema import schema as scenario_schema
 
     typer.echo(json.dumps(scenario_schema(), indent=2))
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bench.replay import Moment
+from bench.playing.replay import Moment
 from worlds.types import BLOCKED, FREE, Array
 
 COLOURS = np.array([[150, 150, 150], [255, 255, 255], [30, 30, 30]], np.uint8)  # [3, RGB]: unknown, free, blocked

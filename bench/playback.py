@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from bench import store
 from bench.drawing import film, known, strip, truth
-from bench.replay import End, Moment, retrace, verify
-from bench.scenario import Scenario, Variant
+from bench.playing import store
+from bench.playing.replay import End, Moment, retrace, verify
+from bench.reading.scenario import Scenario, Variant
 from worlds.mistake import Mistake
 from worlds.types import Array, Outcome
 
 READS = ("variant", "agent", "episode", "outcome", "steps", "length", "shortest", "actions", "detail")
-"""The columns of `bench.episode.Episode` that a replay needs."""
+"""The columns of `bench.playing.episode.Episode` that a replay needs."""
 
 PANELS, FRAMES = 5, 300
 """Moments in a strip, and the most in a film."""

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from rich.console import Console
 
-from bench import store
-from bench.pool import cpus
+from bench.playing import store
+from bench.playing.pool import cpus
+from bench.playing.runner import Summary, run
 from bench.progress import Bars
-from bench.report import READS, print_tables, write_report
-from bench.runner import Summary, run
-from bench.scenario import Scenario, ScenarioError, Variant, read_scenario
+from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario
+from bench.reporting.report import READS, print_tables, write_report
 from worlds.mistake import Mistake
 from worlds.types import Outcome
 
@@ -111,7 +111,7 @@ def _refuse_too_many(scenario: Scenario) -> None:
 
 
 def _outlook(variant: Variant) -> Iterator[str]:
-    from bench.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
+    from bench.playing.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
 
     world = episode_world(variant, 0)
     playing = sum(not entry.skipped for entry in variant.agents)

@@ -14,8 +14,8 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from bench.loop import play
-from bench.scenario import read_scenario
+from bench.playing.loop import play
+from bench.reading.scenario import read_scenario
 
 TEXT = """
 name: replanning

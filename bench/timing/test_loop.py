@@ -4,8 +4,8 @@ from itertools import count
 
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from bench.loop import Record, episode_world, play, start_and_roll
-from bench.scenario import read_scenario
+from bench.playing.loop import Record, episode_world, play, start_and_roll
+from bench.reading.scenario import read_scenario
 from bench.shipped import find
 from planners.random_walk import RandomWalk
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from bench.loop import Record, episode_stream, episode_world, start_and_roll
-from bench.plugins import AGENT, load
-from bench.replay import retrace
-from bench.scenario import read_scenario
+from bench.playing.loop import Record, episode_stream, episode_world, start_and_roll
+from bench.playing.replay import retrace
+from bench.reading.plugins import AGENT, load
+from bench.reading.scenario import read_scenario
 from bench.shipped import find
 from planners import PLANNERS
 from planners.astar import search

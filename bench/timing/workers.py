@@ -10,8 +10,8 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from bench.runner import Progress, run
-from bench.scenario import read_scenario
+from bench.playing.runner import Progress, run
+from bench.reading.scenario import read_scenario
 
 ROUNDS = 3
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from bench.scenario import Scenario, read_scenario
+from bench.reading.scenario import Scenario, read_scenario
 
 Make = Callable[..., Scenario]
 

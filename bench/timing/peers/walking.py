@@ -24,8 +24,8 @@ import numpy as np
 from minigrid.envs.empty import EmptyEnv
 from turns import Round, Turns, per_second
 
-from bench.loop import Record, episode_world, play, start_and_roll
-from bench.scenario import read_scenario
+from bench.playing.loop import Record, episode_world, play, start_and_roll
+from bench.reading.scenario import read_scenario
 from bench.shipped import find
 from planners.random_walk import RandomWalk
 

@@ -1,0 +1,1 @@
+"""The episode loop, the processes that run it, and the store of what was played."""

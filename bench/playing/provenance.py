@@ -1,0 +1,99 @@
+"""Where recorded episodes come from: the scenario's text, the machine, the versions, the times."""
+
+import json
+import os
+import platform
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from bench.playing.store import StoreError, put
+from bench.reading.scenario import Scenario
+
+PACKAGES = ("fogbench", "numpy", "numba", "scipy", "networkx", "pandas", "pyarrow", "pydantic", "pebble", "ompl")
+"""Packages whose versions are written down, where they are installed."""
+
+
+@contextmanager
+def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
+    """Write into `run.json` what is run, on what and when; `ended` stays empty where a run was killed.
+
+    Raises:
+        StoreError: the file that is there is broken, or it cannot be written.
+    """
+    path = folder / "run.json"
+    session = {"started": _now(), "ended": None, "workers": workers, **_circumstances()}
+    run = {
+        "scenario": scenario.name,
+        "path": str(scenario.path),
+        "text": scenario.text,
+        "seeds": {variant.name: variant.seed for variant in scenario.variants},
+        "sessions": [*_sessions(path), session],
+    }
+    _write(path, run)
+    try:
+        yield
+    finally:
+        session["ended"] = _now()
+        _write(path, run)
+
+
+def _sessions(path: Path) -> list[Any]:
+    try:
+        return list(json.loads(path.read_text("utf-8"))["sessions"]) if path.exists() else []
+    except (ValueError, KeyError, TypeError, OSError):
+        raise StoreError(f"{path}: got a broken file; expected what an earlier run has written.") from None
+
+
+def _write(path: Path, run: dict[str, Any]) -> None:
+    put(path, json.dumps(run, indent=2, ensure_ascii=False).encode())
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _circumstances() -> dict[str, Any]:
+    return {
+        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "commit": _commit(),
+        "cpu": _cpu(),
+        "cores": os.cpu_count(),
+        "system": platform.platform(),
+        "versions": {"python": platform.python_version(), **_versions()},
+    }
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _cpu() -> str:
+    """The model of the CPU, as far as the system tells."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
+    except OSError:
+        lines = []
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
+
+
+def _commit() -> str | None:
+    """The git commit of the folder where the command was given, with `-dirty` after it if files differ."""
+    command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603  a fixed command
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return answer.stdout.strip()

@@ -1,0 +1,173 @@
+"""The store of a scenario: `run.json` and `episodes/*.parquet` in one folder.
+
+`pandas.read_parquet("results/grid/episodes")` reads it anywhere. Here only the rows count whose keys are those of the
+scenario as it is now: what was played under other settings stays on the disk and enters nothing.
+"""
+
+import fcntl
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from bench.playing.episode import SCHEMA, Episode
+from bench.playing.keys import agent_key, world_key
+from bench.reading.scenario import Scenario
+from worlds.mistake import Mistake
+
+WHO = ["variant", "agent", "episode"]
+"""The columns that tell one row of a scenario from another."""
+
+KEYS = ["variant", "agent", "agent_key", "world_key"]
+
+ROWS = 500
+"""Rows that are held back at most."""
+
+PAUSE, SHARE = 1.0, 0.01
+"""Rows are held back for this many seconds at most, or for this share of a long run's time, so that parts stay few."""
+
+
+class StoreError(Mistake):
+    """A store that cannot be read or written; its text is one line `file: got ...; expected ...`."""
+
+
+def read(folder: Path, scenario: Scenario, columns: Sequence[str]) -> pd.DataFrame:
+    """The recorded episodes of a scenario as it is now, in its order: one row per variant, agent and episode.
+
+    Raises:
+        StoreError: a file is broken.
+    """
+    current = _current(scenario)
+    needed = list(dict.fromkeys([*columns, *WHO, *KEYS]))
+    tables = (_load(part, needed) for part in _parts(folder))
+    frames = [table.to_pandas().merge(current, on=KEYS) for table in (SCHEMA.empty_table().select(needed), *tables)]
+    rows: pd.DataFrame = pd.concat(frames)
+    rows = rows[rows["episode"] < rows["wanted"]].drop_duplicates(WHO)
+    return rows.sort_values(["place", "episode"], ignore_index=True)[list(columns)]
+
+
+def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]]:
+    """The recorded episodes of each variant and agent, by both names; pairs without any are left out.
+
+    Raises:
+        StoreError: a file is broken.
+    """
+    rows = read(folder, scenario, WHO)
+    return {(str(v), str(a)): set(group) for (v, a), group in rows.groupby(WHO[:2], sort=False)["episode"]}
+
+
+def _current(scenario: Scenario) -> pd.DataFrame:
+    """The keys of each variant and agent that runs, its place in the scenario, and how many episodes are wanted."""
+    rows = [
+        (variant.name, entry.label, agent_key(entry), world_key(variant), variant.episodes)
+        for variant in scenario.variants
+        for entry in variant.agents
+        if not entry.skipped
+    ]
+    return pd.DataFrame(rows, columns=[*KEYS, "wanted"]).rename_axis("place").reset_index()
+
+
+def _parts(folder: Path) -> list[Path]:
+    return sorted((folder / "episodes").glob("[!.]*.parquet"))
+
+
+def _load(part: Path, columns: list[str]) -> pa.Table:
+    try:
+        with pq.ParquetFile(part) as file:
+            if not file.schema_arrow.equals(SCHEMA):
+                raise StoreError(f"{part}: got the columns of another version; expected those of this one.")
+            return file.read(columns)
+    except (pa.ArrowException, OSError) as error:
+        reason = str(error).splitlines()[0]
+        raise StoreError(f"{part}: got a broken file ({reason}); expected a Parquet file of episodes.") from None
+
+
+class Recorder:
+    """Appends episodes to a store. A part is written whole or not at all, and never touched again."""
+
+    def __init__(self, folder: Path) -> None:
+        """Go on after the last part that is there."""
+        self.episodes = folder / "episodes"
+        self.part = max((int(part.stem) for part in _parts(folder)), default=0) + 1
+        self.rows: list[Episode] = []
+        self.began = self.written = monotonic()
+
+    def append(self, row: Episode) -> None:
+        """Take one more row."""
+        self.rows.append(row)
+        if len(self.rows) >= ROWS:
+            self.flush()
+        else:
+            self.flush_if_due()
+
+    def flush_if_due(self) -> None:
+        """Write what was held back for long enough."""
+        now = monotonic()
+        if now - self.written > max(PAUSE, SHARE * (now - self.began)):
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is held back."""
+        if self.rows:
+            columns = {name: [getattr(row, name) for row in self.rows] for name in SCHEMA.names}
+            sink = pa.BufferOutputStream()
+            pq.write_table(pa.Table.from_pydict(columns, schema=SCHEMA), sink)
+            put(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
+            # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
+            self.part += 1
+            self.rows = []
+            self.written = monotonic()
+
+
+@contextmanager
+def recording(folder: Path) -> Iterator[Recorder]:
+    """Open a store for writing, alone; what killed runs left half written is removed.
+
+    Raises:
+        StoreError: another run has it open, or it cannot be written.
+    """
+    try:
+        (folder / "episodes").mkdir(parents=True, exist_ok=True)
+        lock = (folder / ".lock").open("w")
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # the kernel lets go of it, however this process ends
+        except OSError:
+            raise StoreError(
+                f"{folder}: got a second run; expected the one that is recording here to end first."
+            ) from None
+        for leftover in (folder / "episodes").glob(".*.parquet"):
+            leftover.unlink()
+        recorder = Recorder(folder)
+        try:
+            yield recorder
+        finally:
+            recorder.flush()
+
+
+def put(path: Path, content: bytes | pa.Buffer) -> None:
+    """Write a whole file or none: to a dot-name, to the disk, then renamed.
+
+    Raises:
+        StoreError: it cannot be written.
+    """
+    draft = path.with_name(f".{path.name}")
+    try:
+        with draft.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
+def _unwritable(path: Path, error: OSError) -> StoreError:
+    return StoreError(f"{path}: got {error.strerror}; expected a place that can be written.")

@@ -1,0 +1,1 @@
+"""From the text of a scenario file to settings, with every mistake at its place."""

@@ -1,0 +1,107 @@
+"""From the text of a YAML file to its values: composed by PyYAML, resolved by nobody."""
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import yaml
+
+from bench.reading.positions import Fault, Spot, Value, join
+
+VARIABLE = re.compile(r"\$\{(\w+)\}")
+"""`${NAME}`: the environment variable of that name."""
+
+SHOWN = 60
+"""Characters of a value that an error shows at most."""
+
+
+def parse(text: str, faults: list[Fault]) -> Value | None:
+    """The mapping that a file is; None where it is none. What is wrong with it is added to `faults`."""
+    node = _compose(text, faults)
+    page = _Document(text, faults).value(node, "", None, ()) if node else None
+    if page is None or isinstance(page.content, dict):
+        return page
+    faults.append(page.wrong("a mapping"))
+    return None
+
+
+def _compose(text: str, faults: list[Fault]) -> yaml.Node | None:
+    try:
+        node = yaml.compose(text, yaml.SafeLoader)
+    except yaml.MarkedYAMLError as error:
+        problem = (error.problem or "").removeprefix("but ")
+        faults.append(_broken(_spot(error.problem_mark), problem))
+    except yaml.reader.ReaderError as error:
+        before = text[: error.position].split("\n")
+        faults.append(_broken(Spot(len(before), len(before[-1]) + 1), f"{error.reason}: {chr(error.character)!r}"))
+    else:
+        if node is None:
+            faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
+        return node
+    return None
+
+
+def _broken(spot: Spot, problem: str) -> Fault:
+    return Fault(*spot, "", f"broken YAML ({problem})", "one YAML document")
+
+
+def _spot(mark: yaml.Mark | None) -> Spot:
+    return Spot(mark.line + 1, mark.column + 1) if mark else Spot(1, 1)
+
+
+class _Document:
+    """The text of a file, and what is wrong with it."""
+
+    def __init__(self, text: str, faults: list[Fault]) -> None:
+        self.text = text
+        self.faults = faults
+
+    def value(self, node: yaml.Node, path: str, key: Spot | None, above: tuple[yaml.Node, ...]) -> Value:
+        """A node with all below it; an aliased node is a value of its own wherever it is used."""
+        spot = _spot(node.start_mark)
+        value = Value(None, path, spot, key or spot, self._written(node))
+        if node in above:
+            self.faults.append(value.wrong("an alias of something that does not hold the alias"))
+            return value
+        if isinstance(node, yaml.ScalarNode):
+            return _scalar(node, value)
+        above = (*above, node)
+        if isinstance(node, yaml.MappingNode):
+            return replace(value, content=dict(self._items(node, value, above)))
+        items = [self.value(item, f"{path}[{number}]", None, above) for number, item in enumerate(node.value)]
+        return replace(value, content=items)
+
+    def _items(
+        self, node: yaml.MappingNode, mapping: Value, above: tuple[yaml.Node, ...]
+    ) -> Iterator[tuple[str, Value]]:
+        lines: dict[str, int] = {}
+        for key_node, node_ in node.value:
+            spot, key = _spot(key_node.start_mark), self._written(key_node)
+            if not isinstance(key_node, yaml.ScalarNode):
+                self.faults.append(Fault(*spot, mapping.path, key, "a key that is text"))
+            elif key == "<<":
+                self.faults.append(Fault(*spot, mapping.path, "<<", "keys written out; merge keys are not read"))
+            elif key_node.value in lines:
+                first = f"each key once (it is first on line {lines[key_node.value]})"
+                self.faults.append(Fault(*spot, mapping.path, f"{key} again", first))
+            else:
+                lines[key_node.value] = spot.line
+                yield key_node.value, self.value(node_, join(mapping.path, key_node.value), spot, above)
+
+    def _written(self, node: yaml.Node) -> str:
+        text = self.text[node.start_mark.index : node.end_mark.index].strip()
+        if "\n" in text and not isinstance(node, yaml.ScalarNode):
+            return "a mapping" if isinstance(node, yaml.MappingNode) else "a list"
+        text = " ".join(text.split()) or "nothing"
+        return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def _scalar(node: yaml.ScalarNode, value: Value) -> Value:
+    """The text of a node; only a plain `null`, `~` or nothing at all is None."""
+    if node.style is None and node.tag == "tag:yaml.org,2002:null":
+        return value
+    variables = tuple(VARIABLE.findall(node.value))
+    text = VARIABLE.sub(lambda found: os.environ.get(found[1], found[0]), node.value)
+    unset = next((name for name in variables if name not in os.environ), "")
+    return replace(value, content=text, variables=variables, unset=unset)

@@ -1,0 +1,105 @@
+"""A scenario: one YAML file, read into worlds to sample and agents to start."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bench.reading.document import parse
+from bench.reading.overlays import pages, settle, unknown_variants
+from bench.reading.positions import Fault
+from bench.reading.variant import Reading
+from worlds.mistake import Mistake
+from worlds.types import AgentSettings, MapFamily
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One agent of a variant."""
+
+    label: str
+    """Its name in tables; unique in its variant."""
+    target: str
+    """Where its class is: `module:class`, or `/absolute/file.py:class` for a plug-in."""
+    settings: AgentSettings | None
+    skipped: str
+    """Why it does not run here; empty if it does."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """One row of a scenario's tables."""
+
+    name: str
+    family: MapFamily
+    conditions: Any
+    """An object of the class that `worlds.KINDS` names for `family.kind`."""
+    agents: tuple[Entry, ...]
+    reference: str
+    """Label of the agent that the others are compared with in pairs."""
+    episodes: int
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """One file."""
+
+    path: Path
+    text: str
+    name: str
+    about: str
+    variants: tuple[Variant, ...]
+    published: dict[str, Any]
+    """`{"source": ..., metric: {agent label: {variant: number}}}`; empty if nothing was published."""
+    skipped: str
+    """Why none of it runs here (a map file's environment variable is not set); empty if it does."""
+
+
+class ScenarioError(Mistake):
+    """A file with mistakes; `lines` has one `file:line:column  path: got X; expected Y.` for each, in order."""
+
+    def __init__(self, lines: list[str]) -> None:
+        """Collect the lines."""
+        super().__init__("\n".join(lines))
+        self.lines = lines
+
+
+def read_scenario(text: str, path: Path) -> Scenario:
+    """Read the text of a scenario file.
+
+    Args:
+        text: the YAML.
+        path: where it came from; plug-ins and map files are relative to its folder.
+
+    Raises:
+        ScenarioError: all the mistakes of the file.
+    """
+    faults: list[Fault] = []
+    page = parse(text, faults)
+    if page is None:
+        raise _error(faults, path)
+    rows = {name: Reading(row, path.parent) for name, row in pages(page, faults).items()}
+    faults += settle([row.faults for row in rows.values()]) + unknown_variants(page, list(rows))
+    if faults:
+        raise _error(faults, path)
+    name, about = (str(value.content) if (value := page.child(key)) else "" for key in ("name", "about"))
+    published = next(iter(rows.values())).published
+    unset = next((value.unset for value in page.below() if value.unset), "")
+    if unset:
+        return Scenario(path, text, name, about, (), published, f"environment variable {unset} is not set")
+    variants = tuple(_variant(name, row) for name, row in rows.items())
+    return Scenario(path, text, name, about, variants, published, "")
+
+
+def _error(faults: list[Fault], path: Path) -> ScenarioError:
+    lines = [fault.text(str(path)) for fault in sorted(faults, key=lambda fault: (fault.line, fault.column))]
+    return ScenarioError(list(dict.fromkeys(lines)))
+
+
+def _variant(name: str, row: Reading) -> Variant:
+    """A variant of which everything could be read."""
+    assert row.page is not None
+    assert row.family is not None
+    agents = tuple(Entry(*agent) for agent in row.agents)
+    reference = row.page.reference or agents[0].label
+    return Variant(name, row.family, row.conditions, agents, reference, row.page.episodes, row.page.seed)

@@ -1,0 +1,1 @@
+"""From recorded episodes to numbers, tables and plots."""

@@ -1,0 +1,187 @@
+"""The plots of a report: one PNG each, a panel for each variant, one colour and mark for each agent in all of them.
+
+Figures are made without pyplot, so nothing global is touched and no window is ever opened.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from bench.reading.scenario import Scenario
+from bench.reporting.curves import Bin, Steps, by_distance, distance_bins, success_by_seconds, success_by_steps
+from bench.reporting.panels import STYLE, Looks, legend, looks_of, panels_of, percent
+from bench.reporting.tables import scaled
+from worlds.types import Array
+
+Frames = Mapping[str, pd.DataFrame]
+"""The episodes of each variant."""
+
+LENGTHS = {"grid": "cells", "graph": "edges", "robot": "m"}
+"""The unit of length, by the kind of world."""
+
+LEAST_MEMORY = 256
+"""The axis of memory is logarithmic above, so that agents that carry nothing have a place too [bytes]."""
+
+
+def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: Path) -> list[str]:
+    """Write the plots into `folder`; none if no episode is recorded.
+
+    Args:
+        frame: recorded episodes, with the columns `bench.reporting.report.READS`.
+        table: their summary.
+        scenario: says the order of variants and agents.
+        folder: must be there.
+
+    Returns:
+        The names of the files.
+    """
+    figures = draw_figures(frame, table, scenario) if len(frame) else {}
+    for name, figure in figures.items():
+        figure.savefig(folder / name, dpi=200)
+    return list(figures)
+
+
+def draw_figures(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> dict[str, Figure]:
+    """The figures by the names of their files; at least one episode is recorded."""
+    variants = {variant.name: frame[frame["variant"] == variant.name] for variant in scenario.variants}
+    frames = {name: episodes for name, episodes in variants.items() if len(episodes)}
+    played = {label: look for label, look in looks_of(scenario).items() if (frame["agent"] == label).any()}
+    with rc_context(STYLE):
+        return {
+            "success.png": success(table, played),
+            "path_ratio.png": path_ratio(table, played),
+            "success_by_steps.png": success_against_steps(frames, played),
+            "success_by_seconds.png": success_against_seconds(frames, played),
+            "success_by_distance.png": success_against_distance(frames, played),
+            "memory_by_distance.png": memory_against_distance(frames, played),
+        }
+
+
+def success(table: pd.DataFrame, looks: Looks) -> Figure:
+    """Success of each agent with its interval, by variant."""
+    figure, (axes,) = _dots(table, ("success",), looks)
+    percent(axes)
+    axes.set_ylabel("success [%]")
+    return figure
+
+
+def path_ratio(table: pd.DataFrame, looks: Looks) -> Figure:
+    """Path ratio to the full-map optimum and to A* on the map seen so far, with intervals, by variant."""
+    figure, panels = _dots(table, ("path_ratio", "reference_ratio"), looks)
+    for axes, other in zip(panels, ("optimum", "A* on the map seen"), strict=True):
+        axes.axhline(1, color="#888888", linewidth=0.8, zorder=1)
+        low, high = axes.get_ylim()
+        axes.set_ylim(min(low, 0.99), max(high, 1.05))  # a narrower axis would make much of nothing
+        axes.set_ylabel(f"length / {other}")
+    return figure
+
+
+def success_against_steps(frames: Frames, looks: Looks) -> Figure:
+    """Success against the step budget, up to the one that was played with."""
+    figure, panels = panels_of(frames, looks, "step budget", "success [%]")
+    for axes, episodes in zip(panels, frames.values(), strict=True):
+        _staircases(axes, {agent: success_by_steps(cell) for agent, cell in _cells(episodes, looks)}, looks,
+                    0, float(episodes["budget_steps"].max()))  # fmt: skip
+    return figure
+
+
+def success_against_seconds(frames: Frames, looks: Looks) -> Figure:
+    """Success against a budget of wall-clock time; unfinished episodes are censored."""
+    figure, panels = panels_of(frames, looks, "budget for all decisions of an episode [s]", "success [%]")
+    for axes, episodes in zip(panels, frames.values(), strict=True):
+        curves = {agent: success_by_seconds(cell) for agent, cell in _cells(episodes, looks)}
+        spent = np.concatenate([[], *(curve.budget for curve in curves.values())])
+        axes.set_xscale("log")
+        _staircases(axes, curves, looks, *_around(spent))
+    return figure
+
+
+def success_against_distance(frames: Frames, looks: Looks) -> Figure:
+    """Success against goal distance, with Wilson's interval as a band."""
+    figure, panels = panels_of(frames, looks, _distance(frames), "success [%]")
+    for axes, agent, bins in _binned(panels, frames, looks):
+        shares = np.array([each.success.times(100)[:3] for each in bins])  # [bins, 3] value, low, high
+        distance = [each.distance for each in bins]
+        axes.plot(distance, shares[:, 0], **looks[agent]._asdict())
+        axes.fill_between(distance, shares[:, 1], shares[:, 2], color=looks[agent].color, alpha=0.12, linewidth=0)
+        percent(axes)
+    return figure
+
+
+def memory_against_distance(frames: Frames, looks: Looks) -> Figure:
+    """Bytes carried from one decision to the next, against goal distance."""
+    figure, panels = panels_of(frames, looks, _distance(frames), "peak memory")
+    for axes, agent, bins in _binned(panels, frames, looks):
+        distance, carried = [each.distance for each in bins], [each.peak_memory for each in bins]
+        axes.plot(distance, carried, clip_on=False, **looks[agent]._asdict())
+    for axes in panels:
+        axes.set_yscale("symlog", base=2, linthresh=LEAST_MEMORY)
+        axes.set_ylim(bottom=0)
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda size, _: scaled(size, "bytes")))
+    return figure
+
+
+def _dots(table: pd.DataFrame, metrics: Sequence[str], looks: Looks) -> tuple[Figure, list[Axes]]:
+    """Estimates with intervals: a panel for each metric, variants side by side, agents next to each other in each."""
+    variants = list(dict.fromkeys(table["variant"]))
+    width = float(np.clip(1.2 + 0.2 * len(variants) * (len(looks) + 1), 4.5, 14))
+    figure = Figure(figsize=(width, 0.8 + 2.2 * len(metrics)), layout="constrained")
+    panels = list(figure.subplots(len(metrics), 1, sharex=True, squeeze=False).flat)
+    for axes, metric in zip(panels, metrics, strict=True):
+        for k, (agent, look) in enumerate(looks.items()):
+            rows = table[(table["metric"] == metric) & (table["agent"] == agent)]
+            at = rows["variant"].map(variants.index) + 0.8 * ((k + 0.5) / len(looks) - 0.5)
+            reach = np.maximum(0, [rows["value"] - rows["low"], rows["high"] - rows["value"]])  # [2, variants]
+            axes.errorbar(at, rows["value"], reach, color=look.color, marker=look.marker, linestyle="", capsize=2)
+        _side_by_side(axes, variants)
+    legend(figure, looks, lines=False)
+    return figure, panels
+
+
+def _side_by_side(axes: Axes, variants: Sequence[str]) -> None:
+    axes.set_xticks(range(len(variants)), variants)
+    axes.set_xlim(-0.5, len(variants) - 0.5)
+    axes.grid(visible=False, axis="x")
+    for border in range(1, len(variants)):
+        axes.axvline(border - 0.5, color=STYLE["grid.color"], linewidth=STYLE["grid.linewidth"], zorder=0)
+
+
+def _staircases(axes: Axes, curves: Mapping[str, Steps], looks: Looks, left: float, right: float) -> None:
+    for agent, (budget, solved) in curves.items():
+        height = 100 * np.concatenate([[0], solved, solved[-1:] if len(solved) else [0]])
+        at = [left, *budget, right]
+        axes.step(at, height, where="post", markevery=[-1], clip_on=False, **looks[agent]._asdict())
+    axes.set_xlim(left, right)
+    percent(axes)
+
+
+def _around(seconds: Array) -> tuple[float, float]:
+    """Ends of a logarithmic axis for all of `seconds` [n] that are more than nothing."""
+    seconds = seconds[seconds > 0]
+    return (seconds.min() / 2, seconds.max() * 2) if len(seconds) else (1e-3, 1.0)
+
+
+def _cells(episodes: pd.DataFrame, looks: Looks) -> Iterator[tuple[str, pd.DataFrame]]:
+    for agent in looks:
+        cell = episodes[episodes["agent"] == agent]
+        if len(cell):
+            yield agent, cell
+
+
+def _binned(panels: Sequence[Axes], frames: Frames, looks: Looks) -> Iterator[tuple[Axes, str, list[Bin]]]:
+    """The bins of each agent, with the panel of its variant; all agents of a variant have the same edges."""
+    for axes, episodes in zip(panels, frames.values(), strict=True):
+        edges = distance_bins(episodes)
+        for agent, cell in _cells(episodes, looks):
+            yield axes, agent, by_distance(cell, edges)
+
+
+def _distance(frames: Frames) -> str:
+    kinds = dict.fromkeys(kind for episodes in frames.values() for kind in episodes["kind"].unique())
+    return f"goal distance [{', '.join(LENGTHS.get(kind, kind) for kind in kinds)}]"

@@ -1,0 +1,94 @@
+"""The report of a scenario: recorded episodes in, tables and plots out. Nothing is run again."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from rich.console import Console
+
+from bench.reading.scenario import Scenario
+from bench.reporting.metrics import METRICS
+from bench.reporting.pairs import COMPARISONS, pair
+from bench.reporting.sections import comparisons, headline, page, skipped
+from bench.reporting.statistics import holm
+from bench.reporting.tables import terminal
+
+READS = (
+    "variant", "kind", "agent", "episode", "outcome", "steps", "budget_steps", "length", "shortest",
+    "reference_length", "judged", "wrong_decisions", "strict_wrong", "setup_seconds", "decision_seconds",
+    "peak_memory_bytes", "search_nodes", "detail", "world_key",
+)  # fmt: skip
+"""The columns of `bench.playing.episode.Episode` that a report is made of."""
+
+COLUMNS = ("scenario", "variant", "agent", "metric", "value", "low", "high", "n", "unit")
+"""The columns of `summary.csv`."""
+
+WIDTH = 120
+"""Columns of text that a table takes even where the terminal has fewer, or a pipe pretends to have 80."""
+
+
+def summary(frame: pd.DataFrame, scenario: Scenario) -> pd.DataFrame:
+    """Every metric of every agent in every variant, and its comparison with the reference agent, each in one row.
+
+    Args:
+        frame: the recorded episodes of the scenario, with the columns `READS`.
+        scenario: says the order of the rows and who is the reference agent.
+
+    Returns:
+        A table with the columns `COLUMNS`: a number in its unit, its 95 % interval, how many things it is made of.
+    """
+    table = pd.DataFrame(_answers(frame, scenario), columns=list(COLUMNS))
+    together = table["metric"] == "p_holm"
+    table.loc[together, "value"] = holm(table.loc[together, "value"])
+    return table
+
+
+def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Write `summary.csv`, `summary.md` and the plots, `*.png`, into `folder`.
+
+    Args:
+        frame: as for `summary`.
+        scenario: what was measured; its published numbers stand beside.
+        run: the content of `run.json`.
+        folder: made if it is not there.
+
+    Returns:
+        The summary, for `print_tables`.
+    """
+    from bench.reporting.plots import draw  # noqa: PLC0415  it imports matplotlib, which the tables do not need
+
+    table = summary(frame, scenario)
+    folder.mkdir(parents=True, exist_ok=True)
+    plots = draw(frame, table, scenario, folder)
+    table.to_csv(folder / "summary.csv", index=False, lineterminator="\n")
+    (folder / "summary.md").write_text(page(frame, table, scenario, run, plots), "utf-8")
+    return table
+
+
+def print_tables(table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
+    """Print what a summary says: the results, the comparisons, and who was skipped; nothing is cut off."""
+    for title, lines in (
+        ("Results", headline(table, scenario, short=True)),
+        ("Paired", comparisons(table, scenario)),
+        ("Skipped", skipped(scenario)),
+    ):
+        if lines.rows:
+            console.print(terminal(title, lines, WIDTH if console.width < WIDTH else None), crop=False)
+
+
+def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...]]:
+    for variant in scenario.variants:
+        reference = _cell(frame, variant.name, variant.reference)
+        for entry in variant.agents:
+            cell = _cell(frame, variant.name, entry.label)
+            pairs = pair(cell, reference)
+            place = (scenario.name, variant.name, entry.label)
+            if len(cell):
+                yield from ((*place, metric.name, *metric(cell), metric.unit) for metric in METRICS)
+            if len(pairs) and entry.label != variant.reference:
+                yield from ((*place, metric.name, *metric(pairs), metric.unit) for metric in COMPARISONS)
+
+
+def _cell(frame: pd.DataFrame, variant: str, agent: str) -> pd.DataFrame:
+    return frame[(frame["variant"] == variant) & (frame["agent"] == agent)]

@@ -1,0 +1,146 @@
+"""What a report says, table by table, and `summary.md`, the page that holds them all."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from bench.reading.scenario import Scenario
+from bench.reporting.metrics import METRICS, Metric
+from bench.reporting.pairs import COMPARISONS
+from bench.reporting.statistics import Estimate
+from bench.reporting.tables import NOTHING, Lines, heading, markdown, written
+from worlds.types import Outcome
+
+ASKED = {metric.name: metric for metric in (*METRICS, *COMPARISONS)}
+
+HEADLINE = (
+    "success", "path_ratio", "reference_ratio", "test_error", "decision_p50", "decision_p95", "memory_max", "p_holm",
+)  # fmt: skip
+"""The metrics of the first table."""
+
+READING = (
+    "Brackets are 95 % intervals: Wilson's for shares, Bonett and Price's for paired differences, the bootstrap over "
+    f"episodes for means and ratios. {NOTHING} stands where nothing was measured or published."
+)
+
+Found = Mapping[tuple[str, str, str], Estimate]
+"""The estimates of a summary by variant, agent and name of the metric."""
+
+
+def headline(table: pd.DataFrame, scenario: Scenario, *, short: bool = False) -> Lines:
+    """The results, a row for each agent of each variant; the published numbers stand beside.
+
+    `short` leaves out all intervals and published numbers but those of success: so much fits a terminal.
+    """
+    found = _found(table)
+    full = {name for name in HEADLINE if name == "success" or not short}
+    headings = ["variant", "agent", "n"]
+    for name in HEADLINE:
+        headings += [heading(ASKED[name]), *(["published"] if name in full & scenario.published.keys() else [])]
+    rows = [_row(variant, agent, found, scenario, full) for variant, agent in _places(scenario)]
+    return Lines(headings, rows)
+
+
+def comparisons(table: pd.DataFrame, scenario: Scenario) -> Lines:
+    """Each agent against the reference agent, on the episodes that both played."""
+    found = _found(table)
+    rows = [
+        [variant.name, entry.label, variant.reference,
+         *(written(found[variant.name, entry.label, metric.name], metric) for metric in COMPARISONS)]
+        for variant in scenario.variants
+        for entry in variant.agents
+        if (variant.name, entry.label, COMPARISONS[0].name) in found
+    ]  # fmt: skip
+    return Lines(["variant", "agent", "reference", *map(heading, COMPARISONS)], rows)
+
+
+def failures(frame: pd.DataFrame) -> Lines:
+    """How often each agent failed in which way, with the first thing that was said about it."""
+    failed = frame[frame["outcome"] != Outcome.REACHED.name]
+    groups = failed.groupby(["variant", "agent", "outcome"], sort=False)["detail"]
+    rows = [[*map(str, place), str(len(details)), next(filter(None, details), NOTHING)] for place, details in groups]
+    return Lines(["variant", "agent", "outcome", "episodes", "first detail"], rows)
+
+
+def skipped(scenario: Scenario) -> Lines:
+    """Who did not run, and why."""
+    rows = [
+        [variant.name, entry.label, scenario.skipped or entry.skipped]
+        for variant in scenario.variants
+        for entry in variant.agents
+        if scenario.skipped or entry.skipped
+    ]
+    return Lines(["variant", "agent", "reason"], rows)
+
+
+def columns() -> Lines:
+    """What is asked, in which unit, and of which episodes."""
+    rows = [
+        [metric.heading, f"`{metric.name}`", metric.unit or NOTHING, metric.better or NOTHING, metric.over.words,
+         metric.about]
+        for metric in ASKED.values()
+    ]  # fmt: skip
+    return Lines(["column", "in `summary.csv`", "unit", "better", "over", "what it says"], rows)
+
+
+def page(
+    frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any], plots: Sequence[str]
+) -> str:
+    """The Markdown of `summary.md`; `plots` are the names of its pictures."""
+    source = scenario.published.get("source")
+    parts = [
+        f"# {scenario.name}\n",
+        f"{scenario.about}\n",
+        markdown(headline(table, scenario)),
+        READING + (f" Published: {source}.\n" if source else "\n"),
+        *(f"![{plot.removesuffix('.png').replace('_', ' ')}]({plot})\n" for plot in plots),
+    ]
+    for title, lines in (
+        ("Paired with the reference agent, on the same episodes", comparisons(table, scenario)),
+        ("Failures", failures(frame)),
+        ("Skipped", skipped(scenario)),
+    ):
+        if lines.rows:
+            parts += [f"## {title}\n", markdown(lines)]
+    parts += ["## How it was measured\n", "".join(f"- {fact}\n" for fact in _facts(run))]
+    parts += ["## What the columns say\n", markdown(columns())]
+    return "\n".join(parts)
+
+
+def _places(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Variant and agent of each row: those of the scenario, then those that only the publication has."""
+    published = [numbers for metric, numbers in scenario.published.items() if metric in HEADLINE]
+    for variant in scenario.variants:
+        agents = [entry.label for entry in variant.agents]
+        agents += [agent for numbers in published for agent, cells in numbers.items() if variant.name in cells]
+        yield from ((variant.name, agent) for agent in dict.fromkeys(agents))
+
+
+def _row(variant: str, agent: str, found: Found, scenario: Scenario, full: set[str]) -> list[str]:
+    row = [variant, agent, str(found.get((variant, agent, "success"), Estimate()).n or NOTHING)]
+    for name in HEADLINE:
+        row.append(written(found.get((variant, agent, name), Estimate()), ASKED[name], interval=name in full))
+        if name in full & scenario.published.keys():
+            row.append(_published(scenario, ASKED[name], variant, agent))
+    return row
+
+
+def _published(scenario: Scenario, metric: Metric, variant: str, agent: str) -> str:
+    value = scenario.published[metric.name].get(agent, {}).get(variant)
+    return NOTHING if value is None else f"{value:g}".replace("inf", "∞")
+
+
+def _found(table: pd.DataFrame) -> Found:
+    columns = (table[name] for name in ("variant", "agent", "metric", "value", "low", "high", "n"))
+    return {(v, a, m): Estimate(value, low, high, n) for v, a, m, value, low, high, n in zip(*columns, strict=True)}
+
+
+def _facts(run: Mapping[str, Any]) -> Iterator[str]:
+    """What `run.json` says of the seeds and the machine; sessions that differ are told one after the other."""
+    sessions = run["sessions"]
+    yield f"seed: {', '.join(dict.fromkeys(map(str, run['seeds'].values())))}"
+    for name in ("workers", "cpu", "cores", "system", "commit"):
+        yield f"{name}: {', '.join(dict.fromkeys(str(session[name] or NOTHING) for session in sessions))}"
+    for versions in {str(session["versions"]): session["versions"] for session in sessions}.values():
+        yield f"versions: {', '.join(f'{package} {version}' for package, version in versions.items())}"

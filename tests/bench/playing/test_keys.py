@@ -1,0 +1,170 @@
+"""Keys of episodes change with everything that an episode depends on, and with nothing else."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bench.playing.keys import agent_key, world_key
+from bench.reading.scenario import Variant, read_scenario
+from planners.astar import AStar
+
+TEXT = """\
+name: keys
+about: One agent.
+maps: {blobs: {size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}}
+sensor: {radius: 2}
+budget: {steps: 40}
+agents: [astar]
+episodes: 5
+seed: 1
+"""
+
+PLUGIN = """
+from planners.astar import AStar
+
+
+class Mine(AStar):
+    depth: int = 3
+"""
+
+FAMILY = """
+from worlds.blobs import Blobs
+
+
+class Sparse(Blobs):
+    pass
+"""
+
+
+def variant(old: str = "", new: str = "", path: Path = Path("keys.yaml")) -> Variant:
+    """The one variant of the text, with a change."""
+    assert old in TEXT
+    return read_scenario(TEXT.replace(old, new, 1), path).variants[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("seed: 1", "seed: 2"),
+        ("size: 8", "size: 9"),
+        ("radius: 2", "radius: 3"),
+        ("steps: 40", "steps: 41"),
+        ("budget", "rules: {slip: 0.1}\nbudget"),
+        ("budget", "tasks: {distance: [1, 9]}\nbudget"),
+        ("blobs: {size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}", "tunnel: {length: [3, 3]}"),
+    ],
+)
+def test_what_changes_the_worlds_changes_their_key(old: str, new: str) -> None:
+    """Seed, map family, sensor, rules, tasks, budget."""
+    assert world_key(variant(old, new)) != world_key(variant())
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("name: keys", "name: other"),
+        ("about: One agent.", "about: More."),
+        ("[astar]", "[memoryless, astar]"),
+        ("episodes: 5", "episodes: 6"),
+        ("size: 8, obstacles: [0, 3]", "obstacles: [0, 3], size: 8"),
+        ("seed: 1", "variants: {one: {seed: 1}}"),
+    ],
+)
+def test_what_changes_no_world_leaves_their_key(old: str, new: str) -> None:
+    """Names, agents, the number of episodes, the order of the settings."""
+    assert world_key(variant(old, new)) == world_key(variant())
+
+
+def test_map_files_count_by_their_contents(tmp_path: Path) -> None:
+    """A moved file is the same map, a changed one is another."""
+    scenes = []
+    for name, cell in (("a", "."), ("b", "."), ("c", "T")):
+        (tmp_path / name).mkdir()
+        rows = f"type octile\nheight 2\nwidth 2\nmap\n..\n.{cell}\n"
+        (tmp_path / name / "m.map").write_text(rows)
+        (tmp_path / name / "m.map.scen").write_text("version 1\n0\tm.map\t2\t2\t0\t0\t1\t0\t1\n")
+        maps = "movingai: {map: m.map}"
+        old = "blobs: {size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}"
+        scenes.append(world_key(variant(old, maps, tmp_path / name / "keys.yaml")))
+    assert scenes[0] == scenes[1] != scenes[2]
+
+
+def test_an_agents_settings_are_in_its_key_and_its_label_and_place_are_not() -> None:
+    """Nor is the scenario that it plays in."""
+    listed = "[memoryless, astar: {label: x}, astar: {replan: cut, label: y}, astar: {replan: change}]"
+    memoryless, x, y, eager = map(agent_key, variant("[astar]", listed).agents)
+    (astar,) = map(agent_key, variant("seed: 1", "seed: 2").agents)
+    assert astar == x == y
+    assert len({astar, memoryless, eager}) == 3
+
+
+def test_a_plug_in_counts_by_its_source_and_not_by_its_path(tmp_path: Path) -> None:
+    """Two copies have the same key; a changed line, even a comment, is another agent."""
+    found = []
+    for name, source in (("a", PLUGIN), ("b", PLUGIN), ("c", PLUGIN + "# more\n")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / f"{name}.py").write_text(source)
+        agents = variant("[astar]", f"[./{name}.py:Mine]", tmp_path / name / "keys.yaml").agents
+        found.append(agent_key(agents[0]))
+    assert found[0] == found[1] != found[2]
+
+
+def test_a_users_map_family_counts_by_its_source(tmp_path: Path) -> None:
+    """Its settings alone do not say what it draws."""
+    found = []
+    for name, source in (("a", FAMILY), ("b", FAMILY), ("c", FAMILY + "# more\n")):
+        (tmp_path / f"{name}.py").write_text(source)
+        found.append(world_key(variant("blobs", f"./{name}.py:Sparse", tmp_path / "keys.yaml")))
+    assert found[0] == found[1] != found[2]
+
+
+def test_sources_are_in_the_keys(tmp_path: Path) -> None:
+    """Those of the worlds and of the loop are in the one, those of the planners in the other, no report in any."""
+    for package in ("worlds", "planners", "bench"):
+        (tmp_path / package).mkdir()
+        for file in Path(__import__(package).__path__[0]).glob("*.py"):
+            shutil.copy(file, tmp_path / package)
+
+    def both() -> list[str]:
+        code = (
+            "from pathlib import Path; from bench.playing.keys import *;"
+            "from bench.reading.scenario import read_scenario;"
+            f"variant = read_scenario({TEXT!r}, Path('keys.yaml')).variants[0];"
+            "print(world_key(variant), agent_key(variant.agents[0]))"
+        )
+        env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, stdout=subprocess.PIPE, check=True)
+        return done.stdout.decode().split()
+
+    world, agent = both()
+    for file, changed in (
+        ("worlds/belief.py", (True, False)),
+        ("planners/route.py", (False, True)),
+        ("bench/playing/loop.py", (True, False)),
+        ("bench/reporting/report.py", (False, False)),
+    ):
+        text = (tmp_path / file).read_text()
+        (tmp_path / file).write_text(text + "# changed\n")
+        now = both()
+        assert (now[0] != world, now[1] != agent) == changed
+        (tmp_path / file).write_text(text)
+
+
+def test_a_skipped_agent_without_settings_has_no_key(tmp_path: Path) -> None:
+    """It has no episodes."""
+    (tmp_path / "needs.py").write_text("import fog_lamp\n")
+    (agent,) = variant("[astar]", "[./needs.py:Mine]", tmp_path / "keys.yaml").agents
+    with pytest.raises(TypeError, match="Mine has no settings: needs the package fog_lamp, which is not installed"):
+        agent_key(agent)
+
+
+def test_keys_are_digests_that_know_a_class_by_its_name() -> None:
+    """64 hexadecimal digits, the same for an equal object."""
+    (agent,) = variant().agents
+    assert agent.settings == AStar()
+    assert len(agent_key(agent)) == len(world_key(variant())) == 64
+    assert set(agent_key(agent) + world_key(variant())) <= set("0123456789abcdef")

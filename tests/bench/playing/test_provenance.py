@@ -1,0 +1,44 @@
+"""Where episodes come from: what `run.json` says of every session."""
+
+import json
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from bench.playing.provenance import noted
+from bench.playing.store import StoreError
+
+
+def test_every_session_is_noted(make: Any, tmp_path: Path) -> None:
+    """The file has the scenario's text, and each session's versions, command and times, before it has ended too."""
+    scenario = make()
+    with noted(tmp_path, scenario, 3):
+        begun = json.loads((tmp_path / "run.json").read_text())
+    with pytest.raises(KeyboardInterrupt), noted(tmp_path, scenario, 1):
+        raise KeyboardInterrupt
+    run = json.loads((tmp_path / "run.json").read_text())
+    assert (run["scenario"], run["path"]) == ("small", str(tmp_path / "small.yaml"))
+    assert run["text"] == (tmp_path / "small.yaml").read_text()
+    assert run["seeds"] == {"short": 0, "long": 0}
+    first, second = run["sessions"]
+    assert [session["workers"] for session in run["sessions"]] == [3, 1]
+    assert first == {**begun["sessions"][0], "ended": first["ended"]}
+    assert begun["sessions"][0]["ended"] is None
+    assert first["started"] <= first["ended"] <= second["ended"]
+    assert first["versions"]["python"] == platform.python_version()
+    assert first["versions"]["numba"] == version("numba")
+    assert {"cpu", "cores", "commit", "command", "system"} <= set(first)
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"sessions": 3}'])
+def test_a_broken_file_is_named_and_kept(make: Any, tmp_path: Path, text: str) -> None:
+    """What is not as an earlier run has written it gives one line, and stays."""
+    path = tmp_path / "run.json"
+    path.write_text(text)
+    with pytest.raises(StoreError) as caught, noted(tmp_path, make(), 1):
+        pass
+    assert str(caught.value) == f"{path}: got a broken file; expected what an earlier run has written."
+    assert path.read_text() == text

@@ -1,0 +1,175 @@
+"""Replays of recorded episodes, and the pictures that are drawn of them."""
+
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, film, known, strip, truth
+from bench.playing.loop import lost, play
+from bench.playing.replay import End, Moment, retrace, verify
+from bench.reading.scenario import Entry, Scenario, Variant
+from planners.astar import AStar
+from planners.memoryless import Memoryless
+from planners.random_walk import RandomWalk
+from worlds.blobs import Blobs
+from worlds.mistake import Mistake
+from worlds.types import BLOCKED, FREE, UNKNOWN, Outcome
+
+Row = dict[str, Any]
+
+NOISE = {"false_readings": 0.1, "slip": 0.2, "slip_to": "sideways", "radius": 2}
+SMALL = "S.. .#. ..G"
+
+
+@pytest.fixture
+def scenario(conditions: Callable[..., Any]) -> Callable[..., Scenario]:
+    """Makes a scenario of one variant: a family, one agent, and the fields of the conditions."""
+
+    def make(family: Any, settings: Any, **fields: Any) -> Scenario:
+        entry = Entry("agent", "", settings, "")
+        variant = Variant("row", family, conditions(**fields), (entry,), "agent", episodes=100, seed=0)
+        return Scenario(Path(), "", "hand-made", "", (variant,), {}, "")
+
+    return make
+
+
+def record(scenario: Scenario, episode: int) -> Row:
+    """The row of a played episode."""
+    (variant,) = scenario.variants
+    return asdict(play(scenario, variant, variant.agents[0], episode, workers=1))
+
+
+def replayed(scenario: Scenario, episode: int, actions: Any) -> tuple[list[Moment], End]:
+    """Every moment of a replay, and its end."""
+    moments, kept = retrace(scenario.variants[0], episode, np.array(actions)), []
+    while True:
+        try:
+            moment = next(moments)
+        except StopIteration as stop:
+            return kept, stop.value
+        kept.append(moment._replace(known=moment.known.copy(), path=list(moment.path)))
+
+
+def test_recorded_episodes_of_every_outcome_replay(scenario: Callable[..., Scenario]) -> None:
+    """With noise, slips and all ways to end, the same steps over the same length end in the same way."""
+    maps = Blobs(size=8, obstacles=(3, 9), obstacle_size=(1, 3))
+    seen = set()
+    for settings, budget in ((AStar(), None), (Memoryless(), None), (RandomWalk(), None), (AStar(), 1)):
+        made = scenario(maps, settings, memory_bytes=budget, steps=15, **NOISE)
+        for episode in range(12):
+            row = record(made, episode)
+            moments, end = replayed(made, episode, row["actions"])
+            verify(row, end)
+            assert len(moments) == row["steps"] + 1
+            seen.add(row["outcome"])
+    assert seen == {"REACHED", "COLLIDED", "GAVE_UP", "OUT_OF_STEPS", "OUT_OF_MEMORY"}
+
+
+def test_a_lost_episode_replays_to_its_start(scenario: Callable[..., Scenario]) -> None:
+    """An episode that hung or died left no actions: what is replayed is the first look."""
+    made = scenario(Blobs(size=8, obstacles=(3, 9), obstacle_size=(1, 3)), AStar())
+    (variant,) = made.variants
+    for outcome in (Outcome.HUNG, Outcome.CRASHED):
+        row = asdict(lost(made, variant, variant.agents[0], 0, 1, outcome, ""))
+        moments, end = replayed(made, 0, row["actions"])
+        verify(row, end)
+        assert len(moments) == 1
+
+
+@pytest.mark.parametrize(
+    ("actions", "told"),
+    [
+        ((0.0, 0.0, 1.0, 3.0), "4 steps over 4 and did not reach the goal"),
+        ((0.0, 0.0, 1.0), "3 steps over 3 and did not reach the goal"),
+        ((0.0, 1.0, 0.0, 1.0), "4 steps over 3 and did not reach the goal"),
+        ((0.0, 2.0, 0.0, 0.0, 1.0, 1.0), "6 steps over 6 and reached the goal"),
+    ],
+)
+def test_altered_actions_are_refused(
+    scenario: Callable[..., Scenario], picture: Callable[[str], Any], actions: tuple[float, ...], told: str
+) -> None:
+    """A replay that does not end as recorded is a mistake that tells both ends in one line."""
+    made = scenario(picture(SMALL), AStar())
+    row = record(made, 7)
+    assert row["actions"] == (0.0, 0.0, 1.0, 1.0)
+    _, end = replayed(made, 7, actions)
+    with pytest.raises(Mistake) as caught:
+        verify(row, end)
+    assert str(caught.value) == (
+        f"episode 7 of agent in row: the replay took {told}; recorded are 4 steps over 4 and REACHED."
+    )
+
+
+@pytest.mark.parametrize(("outcome", "collided"), [("COLLIDED", False), ("OUT_OF_STEPS", True), ("REACHED", False)])
+def test_another_outcome_is_refused(outcome: str, collided: bool) -> None:
+    """Equal steps and lengths are not enough: the goal and a collision must be found where they are recorded."""
+    row = {"episode": 0, "agent": "a", "variant": "v", "steps": 2, "length": 1.0, "outcome": outcome}
+    with pytest.raises(Mistake, match=f"recorded are 2 steps over 1 and {outcome}"):
+        verify(row, End(2, 1.0, reached=False, collided=collided))
+
+
+@pytest.fixture
+def moments(scenario: Callable[..., Scenario], picture: Callable[[str], Any]) -> list[Moment]:
+    """A short walk: down, down, into the border, right."""
+    made = scenario(picture(SMALL), AStar(), collision="blocked")
+    return replayed(made, 0, (0.0, 0.0, 0.0, 1.0))[0]
+
+
+def test_moments_follow_the_agent(moments: list[Moment]) -> None:
+    """Each moment has its look, the path up to it, and the known map with its look in it."""
+    assert [moment.observation.place for moment in moments] == [(0, 0), (1, 0), (2, 0), (2, 0), (2, 1)]
+    assert [moment.observation.blocked for moment in moments] == [False, False, False, True, False]
+    assert moments[3].path == [(0, 0), (1, 0), (2, 0), (2, 0)]
+    first, last = moments[0].known.tolist(), moments[-1].known.tolist()
+    assert first == [[FREE, FREE, UNKNOWN], [FREE, BLOCKED, UNKNOWN], [UNKNOWN] * 3]
+    assert last == [[FREE, FREE, UNKNOWN], [FREE, BLOCKED, FREE], [FREE, FREE, FREE]]
+
+
+def test_pictures_show_every_cell(moments: list[Moment]) -> None:
+    """The known map in its three colours, the truth with the view tinted, and path, goal and agent over both."""
+    unknown, free, blocked = map(tuple, COLOURS.tolist())
+
+    def tinted(colour: tuple[int, ...]) -> tuple[int, ...]:
+        return tuple(int(0.6 * a + 0.4 * b) for a, b in zip(colour, (86, 180, 233), strict=True))
+
+    assert [[tuple(cell) for cell in row] for row in known(moments[1]).tolist()] == [
+        [PATH, free, unknown],
+        [AGENT, blocked, unknown],
+        [free, free, GOAL],
+    ]
+    assert [[tuple(cell) for cell in row] for row in truth(moments[1]).tolist()] == [
+        [PATH, tinted(free), free],
+        [AGENT, tinted(blocked), free],
+        [tinted(free), tinted(free), GOAL],
+    ]
+
+
+def test_a_strip_is_a_picture(moments: list[Moment], tmp_path: Path) -> None:
+    """A PNG that is as wide as it has moments."""
+    for count in (1, 4):
+        strip([(truth(m), known(m), n) for n, m in enumerate(moments[:count])], "a title", tmp_path / "strip.png")
+        with Image.open(tmp_path / "strip.png") as image:
+            image.load()
+            assert (image.format, image.size) == ("PNG", (264 * count, 594))
+
+
+def test_a_film_shows_every_step(moments: list[Moment], tmp_path: Path) -> None:
+    """A GIF of 80 ms a step, the truth beside the known map; a step that changes nothing prolongs its frame."""
+    film([(truth(m), known(m), n) for n, m in enumerate(moments)], tmp_path / "film.gif")
+    scale = SIDE // 3
+    with Image.open(tmp_path / "film.gif") as image:
+        assert (image.format, image.size) == ("GIF", (7 * scale, 3 * scale))
+        assert image.n_frames == 4
+        lasts, agents = [], []
+        for frame in range(image.n_frames):
+            image.seek(frame)
+            lasts.append(image.info["duration"])
+            cells = np.asarray(image.convert("RGB"))[scale // 2 :: scale, scale // 2 :: scale]  # [3, 7, RGB]
+            agents.append(np.argwhere((cells == AGENT).all(-1)).tolist())
+    assert lasts == [80, 80, 160, 80]
+    assert agents == [[[r, c], [r, c + 4]] for r, c in ((0, 0), (1, 0), (2, 0), (2, 1))]

@@ -1,0 +1,135 @@
+"""The plots: pictures with the right panels, drawn without touching anything global."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+
+from bench.reading.scenario import Entry, Scenario
+from bench.reporting.panels import looks_of
+from bench.reporting.plots import draw, draw_figures
+from bench.reporting.report import summary
+
+Recorded = Callable[..., pd.DataFrame]
+Make = Callable[..., Scenario]
+
+PANELS = {
+    "success.png": 1, "path_ratio.png": 2, "success_by_steps.png": 2, "success_by_seconds.png": 2,
+    "success_by_distance.png": 2, "memory_by_distance.png": 2,
+}  # fmt: skip
+"""How many panels each plot of two variants has."""
+
+
+@pytest.fixture
+def frame(recorded: Recorded) -> pd.DataFrame:
+    """Two variants; A* solves everything and the memoryless planner nothing."""
+    return recorded(
+        *(
+            {"variant": variant, "agent": agent, "outcome": outcome, "episode": k, "steps": k, "shortest": float(k)}
+            for variant in ("short", "long")
+            for agent, outcome in (("astar", "REACHED"), ("memoryless", "COLLIDED"))
+            for k in range(1, 7)
+        )
+    )
+
+
+def figures(frame: pd.DataFrame, scenario: Scenario) -> dict[str, Figure]:
+    """All figures, not written."""
+    return draw_figures(frame, summary(frame, scenario), scenario)
+
+
+def curve(axes: Any, scenario: Scenario, agent: str) -> tuple[list[float], list[float]]:
+    """The points of an agent's line."""
+    colour = looks_of(scenario)[agent].color
+    (line,) = [line for line in axes.lines if line.get_color() == colour]
+    return list(line.get_xdata()), list(line.get_ydata())
+
+
+def test_every_plot_has_its_panels(frame: pd.DataFrame, make: Make) -> None:
+    """One a variant, titled by it; success has one for all, path ratio one for each optimum."""
+    drawn = figures(frame, make())
+    assert {name: len(figure.axes) for name, figure in drawn.items()} == PANELS
+    assert [axes.get_title() for axes in drawn["success_by_steps.png"].axes] == ["short", "long"]
+
+
+@pytest.mark.parametrize("chosen", [slice(None), slice(0, 12), slice(0, 1), slice(6, 7)])
+def test_plots_are_pictures_whatever_was_recorded(
+    chosen: slice, frame: pd.DataFrame, make: Make, tmp_path: Path
+) -> None:
+    """Two variants, one variant, one success, and one failure: six PNGs with something on them."""
+    frame, scenario = frame[chosen], make()
+    assert draw(frame, summary(frame, scenario), scenario, tmp_path) == list(PANELS)
+    for name in PANELS:
+        with Image.open(tmp_path / name) as picture:
+            assert picture.format == "PNG"
+            assert len(np.unique(np.asarray(picture.convert("L")))) > 10
+
+
+def test_an_agent_looks_the_same_in_all_plots(frame: pd.DataFrame, make: Make) -> None:
+    """The legend of every plot shows the agents that played, in the colours of the scenario."""
+    scenario = make()
+    looks = looks_of(scenario)
+    for figure in figures(frame, scenario).values():
+        (legend,) = figure.legends
+        shown = {
+            text.get_text(): line.get_color() for text, line in zip(legend.texts, legend.legend_handles, strict=True)
+        }
+        assert shown == {agent: looks[agent].color for agent in ("astar", "memoryless")}
+
+
+def test_the_looks_of_twenty_agents_differ(make: Make) -> None:
+    """Where colours repeat, marks and dashes do not."""
+    scenario = make()
+    entries = tuple(Entry(f"agent{k}", "", None, "") for k in range(20))
+    scenario = replace(scenario, variants=(replace(scenario.variants[0], agents=entries),))
+    assert len(set(looks_of(scenario).values())) == 20
+
+
+def test_the_curve_of_steps_ends_at_the_budget(frame: pd.DataFrame, make: Make) -> None:
+    """Six successes after 1 to 6 steps climb by a sixth each; the failures stay on the floor."""
+    scenario = make()
+    axes = figures(frame, scenario)["success_by_steps.png"].axes[0]
+    steps, solved = curve(axes, scenario, "astar")
+    assert steps == [0, 1, 2, 3, 4, 5, 6, 6]
+    assert solved == pytest.approx([0, *(100 * k / 6 for k in range(1, 7)), 100])
+    assert curve(axes, scenario, "memoryless") == ([0, 6], [0, 0])
+
+
+def test_the_curve_of_time_has_a_logarithmic_axis_around_all_successes(frame: pd.DataFrame, make: Make) -> None:
+    """All took 10 ms; where nobody succeeded there is an axis too."""
+    axes = figures(frame, make())["success_by_seconds.png"].axes[0]
+    assert axes.get_xscale() == "log"
+    assert axes.get_xlim() == pytest.approx((0.005, 0.02))
+    assert figures(frame[6:7], make())["success_by_seconds.png"].axes[0].get_xlim() == (1e-3, 1)
+
+
+def test_memory_says_its_unit(frame: pd.DataFrame, make: Make) -> None:
+    """Ticks are sizes, and nothing carried has its place on the axis."""
+    axes = figures(frame, make())["memory_by_distance.png"].axes[0]
+    assert axes.yaxis.get_major_formatter()(4096) == "4 KiB"
+    assert axes.get_ylim()[0] == 0
+    assert axes.figure.get_supxlabel() == "goal distance [cells]"
+
+
+def test_drawing_leaves_the_settings_of_matplotlib_alone(frame: pd.DataFrame, make: Make, tmp_path: Path) -> None:
+    """Who plots in the same process keeps his own settings."""
+    before = {name: mpl.rcParams[name] for name in mpl.rcParams}
+    draw(frame, summary(frame, make()), make(), tmp_path)
+    assert {name: mpl.rcParams[name] for name in mpl.rcParams} == before
+
+
+def test_an_axis_of_ratios_makes_nothing_of_noise(frame: pd.DataFrame, make: Make) -> None:
+    """However close to 1 the ratios are, the axis reaches from 0.99 to 1.05 at least, in plain numbers."""
+    frame["length"] = frame["shortest"] * 1.0001
+    axes = figures(frame, make())["path_ratio.png"].axes[0]
+    low, high = axes.get_ylim()
+    assert low <= 0.99
+    assert high >= 1.05
+    assert axes.yaxis.get_major_formatter().get_useOffset() is False

@@ -1,0 +1,183 @@
+"""The report: all its numbers in a table, all its words on a page, the same bytes each time, in little memory."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from rich.console import Console
+
+from bench.playing.episode import SCHEMA
+from bench.reading.scenario import Scenario
+from bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
+from bench.reporting.sections import ASKED, columns
+
+Recorded = Callable[..., pd.DataFrame]
+Make = Callable[..., Scenario]
+
+PUBLISHED = {"source": "A paper, table 1", "success": {"MACN": {"short": 96.3}, "memoryless": {"short": 12}}}
+
+MACHINE = {
+    "workers": 2,
+    "cpu": "Some CPU",
+    "cores": 4,
+    "system": "Linux",
+    "versions": {"python": "3.12", "numpy": "2.0"},
+}
+
+RUN = {"seeds": {"short": 0, "long": 0}, "sessions": [{**MACHINE, "commit": "abc"}, {**MACHINE, "commit": "def"}]}
+
+PAGE = Path(__file__).with_name("summary.md")
+"""The page of the small report below, checked by hand; it ends before the explanation of the columns."""
+
+
+@pytest.fixture
+def frame(recorded: Recorded) -> pd.DataFrame:
+    """A* solves two short episodes and a long one; the memoryless planner walks around in one and crashes in one."""
+    memoryless = {"agent": "memoryless", "peak_memory_bytes": 2048}
+    crashed = {"outcome": "CRASHED", "detail": "ValueError: a | b (act, line 3)"}
+    return recorded(
+        {"episode": 0}, {"episode": 1}, {"episode": 0, "variant": "long"},
+        {"episode": 0, "length": 6.0, **memoryless},
+        {"episode": 1, "wrong_decisions": 2, **crashed, **memoryless},
+    )  # fmt: skip
+
+
+@pytest.fixture
+def scenario(make: Make) -> Scenario:
+    """The small scenario with published numbers; the random walk is skipped."""
+    scenario = make(published=PUBLISHED)
+    variants = []
+    for variant in scenario.variants:
+        *others, last = variant.agents
+        variants.append(replace(variant, agents=(*others, replace(last, settings=None, skipped="no legs"))))
+    return replace(scenario, variants=tuple(variants))
+
+
+def test_a_report_reads_columns_of_the_store() -> None:
+    """Every column it asks for is one that is recorded."""
+    assert set(READS) <= set(SCHEMA.names)
+
+
+def test_the_summary_has_a_row_for_every_number(frame: pd.DataFrame, scenario: Scenario) -> None:
+    """All metrics of the three cells that were played, and the comparisons of the one pair of agents."""
+    table = summary(frame, scenario)
+    metrics, compared = len(ASKED) - 7, 7
+    assert tuple(table.columns) == COLUMNS
+    assert len(table) == 3 * metrics + compared
+    one = table[(table["agent"] == "memoryless") & (table["metric"] == "success")]
+    assert one[["scenario", "variant", "value", "n", "unit"]].to_numpy().tolist() == [["small", "short", 50.0, 2, "%"]]
+
+
+def test_p_values_are_adjusted_over_the_whole_scenario(recorded: Recorded, make: Make) -> None:
+    """Four comparisons in two variants: the smallest p, (1/2)^6 from 6 to 0 discordant pairs, counts four times."""
+    frame = recorded(
+        *({"episode": k, "variant": variant} for variant in ("short", "long") for k in range(6)),
+        *(
+            {"episode": k, "variant": variant, "agent": agent, "outcome": outcome}
+            for variant, agent, outcome in (
+                ("short", "memoryless", "COLLIDED"), ("short", "random_walk", "REACHED"),
+                ("long", "memoryless", "REACHED"), ("long", "random_walk", "REACHED"),
+            )
+            for k in range(6)
+        ),
+    )  # fmt: skip
+    table = summary(frame, make())
+    values = {name: table.loc[table["metric"] == name, "value"].tolist() for name in ("p", "p_holm")}
+    assert values == {"p": pytest.approx([1 / 64, 1, 1, 1]), "p_holm": pytest.approx([4 / 64, 1, 1, 1])}
+
+
+def test_the_page_says_all_of_it(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
+    """The exact Markdown of a small report, up to the explanation of the columns."""
+    write_report(frame, scenario, RUN, tmp_path)
+    text, _ = (tmp_path / "summary.md").read_text("utf-8").split("## What the columns say")
+    assert text == PAGE.read_text("utf-8")
+
+
+def test_the_page_explains_every_metric() -> None:
+    """One row each: its column, its name in the CSV, unit, direction, episodes and meaning, none of them empty."""
+    rows = columns().rows
+    assert [row[1] for row in rows] == [f"`{name}`" for name in ASKED]
+    assert all(map(all, rows))
+
+
+def test_writing_twice_gives_the_same_bytes(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
+    """The bootstrap is seeded and nothing depends on the day: CSV and Markdown repeat."""
+    for folder in ("a", "b"):
+        write_report(frame, scenario, RUN, tmp_path / folder)
+    for name in ("summary.csv", "summary.md"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_the_csv_holds_the_summary(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
+    """Reading it gives back every number exactly."""
+    table = write_report(frame, scenario, RUN, tmp_path)
+    pd.testing.assert_frame_equal(
+        pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values={"value": "", "low": "", "high": ""}),
+        table, check_dtype=False, rtol=0, atol=0,
+    )  # fmt: skip
+
+
+def test_nothing_recorded_yet_is_a_report_too(scenario: Scenario, tmp_path: Path) -> None:
+    """Every agent has its row of dashes, the CSV its header, and there is no plot."""
+    frame = SCHEMA.empty_table().select(list(READS)).to_pandas()
+    write_report(frame, scenario, {"seeds": {"short": 0}, "sessions": []}, tmp_path)
+    assert (tmp_path / "summary.csv").read_text() == ",".join(COLUMNS) + "\n"
+    assert "| short   | astar       | —   |" in (tmp_path / "summary.md").read_text("utf-8")
+    assert list(tmp_path.glob("*.png")) == []
+
+
+@pytest.mark.parametrize("width", [40, 120])
+def test_the_terminal_shows_results_comparisons_and_who_was_skipped(
+    width: int, frame: pd.DataFrame, scenario: Scenario
+) -> None:
+    """Each line fits 120 columns, and each row of the page has its line; a narrower terminal cuts nothing off."""
+    console = Console(width=width, file=StringIO())
+    print_tables(summary(frame, scenario), scenario, console)
+    lines = [" ".join(line.split()) for line in console.file.getvalue().splitlines()]
+    assert "short memoryless 2 50.0 [9.5, 90.5] 12 1.500 1.500 0.250 2.5 ms 4 ms 2 KiB 0.500" in lines
+    assert "short memoryless astar -50.0 [-100.0, 56.3] 0 1 0.500 0.500 1.500 1" in lines
+    assert "long random_walk no legs" in lines
+    assert max(map(len, console.file.getvalue().splitlines())) <= 120
+
+
+LARGE = """
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+
+from bench.reporting.report import READS, write_report
+from bench.reading.scenario import Entry, Scenario, Variant
+
+n, cells = 10_000, 10
+rng = np.random.default_rng(0)
+agents = [f"agent{k}" for k in range(cells)]
+entries = tuple(Entry(agent, "", None, "") for agent in agents)
+scenario = Scenario(Path(), "", "large", "", (Variant("all", None, None, entries, agents[0], n, 0),), {}, "")
+shortest = np.tile(rng.integers(1, 60, n), cells).astype(float)
+numbers = {name: rng.integers(1, 60, n * cells) for name in ("steps", "peak_memory_bytes", "search_nodes", "judged")}
+seconds = pa.ListArray.from_arrays(np.arange(0, 60 * n * cells + 1, 60), rng.random(60 * n * cells))
+frame = pd.DataFrame({
+    "variant": "all", "kind": "grid", "agent": np.repeat(agents, n), "episode": np.tile(np.arange(n), cells),
+    "outcome": rng.choice(["REACHED", "COLLIDED"], n * cells), "budget_steps": 60, "length": shortest + 2,
+    "shortest": shortest, "reference_length": shortest, "wrong_decisions": 0, "strict_wrong": 0, "setup_seconds": 0.1,
+    "decision_seconds": seconds.to_pandas(), "detail": "", "world_key": "w", **numbers,
+})[list(READS)]
+del seconds
+write_report(frame, scenario, {"seeds": {}, "sessions": []}, Path(__import__("sys").argv[1]))
+print(int(re.search("VmHWM:\\s+([0-9]+)", Path("/proc/self/status").read_text())[1]) // 1024)
+"""
+
+
+def test_a_hundred_thousand_episodes_fit_in_500_mib(tmp_path: Path) -> None:
+    """With 60 decisions each; peak resident memory of a process that does nothing else."""
+    done = subprocess.run([sys.executable, "-c", LARGE, str(tmp_path)], capture_output=True, text=True, check=True)
+    assert int(done.stdout) < 500
+    assert (tmp_path / "success.png").exists()

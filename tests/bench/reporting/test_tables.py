@@ -1,0 +1,70 @@
+"""How numbers and tables are written."""
+
+from io import StringIO
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from bench.reporting.metrics import ALL, METRICS, Metric
+from bench.reporting.statistics import Estimate
+from bench.reporting.tables import Lines, heading, markdown, scaled, terminal, written
+
+NAMED = {metric.name: metric for metric in METRICS}
+
+
+@pytest.mark.parametrize(
+    ("name", "estimate", "text"),
+    [
+        ("success", Estimate(96.3, 94.94, 97.32, 1000), "96.3 [94.9, 97.3]"),
+        ("success", Estimate(0.0, 0.0, 1.9, 200), "0.0 [0.0, 1.9]"),
+        ("path_ratio", Estimate(1.05, n=1), "1.050"),
+        ("path_ratio", Estimate(), "—"),
+        ("path_ratio", Estimate(np.inf, n=1), "∞"),
+        ("test_error", Estimate(0.0004, 0.0, 0.001, 9), "<0.001 [0.000, 0.001]"),
+        ("decision_p50", Estimate(12.34, n=3), "12.3 ms"),
+        ("memory_mean", Estimate(4200.0, 4000.0, 4400.0, 3), "4.1 KiB"),
+        ("search_nodes", Estimate(1234.5, n=1), "1234"),
+    ],
+)
+def test_a_number_says_what_is_known_and_no_more(name: str, estimate: Estimate, text: str) -> None:
+    """Digits and units are those of the metric; an interval stands where there is one."""
+    assert written(estimate, NAMED[name]) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.0312, "ms", "31.2 µs"), (999.4, "ms", "999 ms"), (999.6, "ms", "1 s"), (90_000, "ms", "90 s"),
+        (0, "bytes", "0 B"), (512, "bytes", "512 B"), (1000, "bytes", "0.977 KiB"), (65536, "bytes", "64 KiB"),
+        (5 * 2**30, "bytes", "5 GiB"),
+    ],
+)  # fmt: skip
+def test_times_and_sizes_stand_in_a_unit_that_suits_them(value: float, unit: str, text: str) -> None:
+    """Never more than three digits before the point, as long as there is a larger unit."""
+    assert scaled(value, unit) == text
+
+
+def test_a_heading_has_a_unit_unless_its_numbers_have() -> None:
+    """`12.3 ms` says its own."""
+    headings = [heading(NAMED[name]) for name in ("success", "spl", "decision_p50")]
+    assert headings == ["success [%]", "SPL", "decision p50"]
+
+
+def test_markdown_is_aligned_and_escapes_bars() -> None:
+    """A text with a bar stays one cell."""
+    text = markdown(Lines(["a", "text"], [["1", "x|y"], ["22", ""]]))
+    assert text == "| a   | text |\n| --- | ---- |\n| 1   | x\\|y |\n| 22  |      |\n"
+
+
+def test_brackets_in_a_terminal_are_text() -> None:
+    """`[1.0, 2.0]` and `[bold]` are printed as they are, not read as markup."""
+    console = Console(width=40, file=StringIO())
+    console.print(terminal("T", Lines(["a", "b"], [["[bold]x", "1.5 [1.0, 2.0]"]])))
+    assert "[bold]x 1.5 [1.0, 2.0]" in console.file.getvalue()
+
+
+def test_a_metric_may_be_made_anywhere() -> None:
+    """A metric is a name, how it is written, and a function of the episodes it is over."""
+    metric = Metric("n", "n", "", "", 0, ALL, "Episodes.", lambda cell: Estimate(float(len(cell))))
+    assert written(Estimate(3.0), metric) == "3"
