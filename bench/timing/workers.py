@@ -1,40 +1,56 @@
-"""Two workers beside one: the same scenario through the real runner, in turn.
+"""Two workers beside one: the same scenario through the real runner, and the same work in plain processes.
 
     python bench/timing/workers.py
 
-Timed is from the first recorded episode to the last, so that the start of the processes, paid once per run, is out.
+What two plain processes gain over one is all that the machine has to give: where its CPUs are two threads of one core,
+or others use them, that is far from 2. Timed is from the first recorded episode to the last, so that the start of the
+workers, paid once per run, is out.
 """
 
+import sys
 from pathlib import Path
 from statistics import median
+from subprocess import PIPE, Popen
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from bench.playing.runner import Progress, run
 from bench.reading.scenario import read_scenario
 
-ROUNDS = 3
+ROUNDS = 5
+STEPS, COUNT = 40, 150_000
+EPISODES = 40
 
-TEXT = """
+TEXT = f"""
 name: workers
 about: Episodes of some 100 ms that compute all the time.
-maps: {blobs: {size: 16, obstacles: [0, 12], obstacle_size: [1, 3]}}
-rules: {collision: blocked}
-tasks: {distance: [10, 40]}
-budget: {steps: 40}
-agents: ["./busy.py:Busy": {count: 150000}]
-episodes: 100
+maps: {{blobs: {{size: 16, obstacles: [0, 12], obstacle_size: [1, 3]}}}}
+rules: {{collision: blocked}}
+tasks: {{distance: [10, 40]}}
+budget: {{steps: {STEPS}}}
+agents: ["./busy.py:Busy": {{count: {COUNT}}}]
+episodes: {EPISODES}
 """
+
+PLAIN = f"""
+from time import perf_counter
+began = perf_counter()
+for _ in range({EPISODES * STEPS // 2}):
+    sum(range({COUNT}))
+print(perf_counter() - began)
+"""
+"""Half of the episodes, without anything around them."""
 
 
 def main() -> None:
-    """Print the figures of each round and the median ratio."""
-    ratios = []
+    """Print the gain of two over one in each round, and the medians."""
+    gains = []
     for _ in range(ROUNDS):
-        one, two = (seconds_per_episode(workers) for workers in (1, 2))
-        ratios.append(one / two)
-        print(f"one worker {1e3 * one:.1f} ms per episode, two {1e3 * two:.1f} ms: {one / two:.2f} times as fast")
-    print(f"two workers are {median(ratios):.2f} times as fast as one (median of {ROUNDS} rounds)")
+        runner, plain = (side(1) / side(2) for side in (seconds_per_episode, seconds_in_plain_processes))
+        gains.append((runner, plain, runner / plain))
+        print(f"two beside one: {runner:.2f} times as fast in the runner, {plain:.2f} in plain processes")
+    runner, plain, share = (median(column) for column in zip(*gains, strict=True))
+    print(f"medians of {ROUNDS} rounds: runner {runner:.2f}, plain processes {plain:.2f}, their ratio {share:.2f}")
 
 
 def seconds_per_episode(workers: int) -> float:
@@ -48,6 +64,13 @@ def seconds_per_episode(workers: int) -> float:
     with TemporaryDirectory() as folder:
         run(read_scenario(TEXT, Path(__file__)), Path(folder), workers, watch)
     return (times[-1] - times[0]) / (len(times) - 1)
+
+
+def seconds_in_plain_processes(processes: int) -> float:
+    """Seconds per episode when nothing but the agents' work is done."""
+    running = [Popen([sys.executable, "-c", PLAIN], stdout=PIPE, text=True) for _ in range(processes)]
+    slowest = max(float(process.communicate()[0]) for process in running)
+    return slowest / (EPISODES // 2) / processes
 
 
 if __name__ == "__main__":  # each worker process imports this file
