@@ -3,7 +3,8 @@
     python bench/timing/peers POGEMA_PYTHON        (`tox -e peers` makes both environments and runs this)
 
 A round of ours and the next one of theirs meet the same load of the machine, so their ratio means something where the
-two figures alone do not. Said are the medians; beside the ratio its least and its most.
+two figures alone do not. Times are CPU seconds of the process that does the work. Said are the medians; beside the
+ratio, how many times as fast ours is, its least and its most.
 """
 
 import sys
@@ -17,7 +18,7 @@ from walking import walks
 
 def main() -> None:
     """Run all comparisons and print one table."""
-    table = Table("work", "peer", "ours", "theirs", "ours is faster, times", "least to most", title="Beside others")
+    table = Table("work", "peer", "ours", "theirs", "ratio", "least to most", title="Beside others")
     for turns in (*walks(sys.argv[1]), *searches()):
         table.add_row(*cells(turns))
     Console().print(table)
