@@ -25,6 +25,11 @@ WHO = ["variant", "agent", "episode"]
 
 KEYS = ["variant", "agent", "agent_key", "world_key"]
 
+pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own pool keeps what is freed
+
+LISTS = {pa.list_(pa.float64()): pd.ArrowDtype(pa.list_(pa.float64()))}
+"""Lists stay as they are stored: an object for each would take twice the memory."""
+
 ROWS = 500
 """Rows that are held back at most."""
 
@@ -43,12 +48,24 @@ def read(folder: Path, scenario: Scenario, columns: Sequence[str]) -> pd.DataFra
         StoreError: a file is broken.
     """
     current = _current(scenario)
-    needed = list(dict.fromkeys([*columns, *WHO, *KEYS]))
-    tables = (_load(part, needed) for part in _parts(folder))
-    frames = [table.to_pandas().merge(current, on=KEYS) for table in (SCHEMA.empty_table().select(needed), *tables)]
-    rows: pd.DataFrame = pd.concat(frames)
-    rows = rows[rows["episode"] < rows["wanted"]].drop_duplicates(WHO)
-    return rows.sort_values(["place", "episode"], ignore_index=True)[list(columns)]
+    kept = list(dict.fromkeys([*WHO, *columns]))
+    rows: pd.DataFrame = pd.concat(
+        [_rows(table, current, kept) for table in (SCHEMA.empty_table(), *_load_all(folder, kept))], ignore_index=True
+    )
+    rows = rows.drop_duplicates(WHO).sort_values(["place", "episode"], ignore_index=True)
+    return rows[list(columns)]
+
+
+def _rows(table: pa.Table, current: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """Those rows of a part that count, without the columns that said so."""
+    frame = table.to_pandas(types_mapper=LISTS.get).merge(current, on=KEYS)
+    wanted: pd.DataFrame = frame.loc[frame["episode"] < frame["wanted"], [*columns, "place"]]
+    return wanted
+
+
+def _load_all(folder: Path, columns: list[str]) -> Iterator[pa.Table]:
+    for part in _parts(folder):
+        yield _load(part, list(dict.fromkeys([*columns, *KEYS])))
 
 
 def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]]:
