@@ -135,5 +135,5 @@ def _report(scenario: Scenario, folder: Path, console: Console) -> None:
         raise Mistake(f"{folder}: got no recorded run; expected `fogbench run {scenario.path}` to come first.")
     frame = store.read(folder, scenario, READS)
     table = write_report(frame, scenario, json.loads(path.read_text("utf-8")), folder)
-    print_tables(table, scenario, console)
+    print_tables(frame, table, scenario, console)
     console.print(f"Tables and plots are in {folder}/", highlight=False)

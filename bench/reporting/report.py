@@ -10,9 +10,10 @@ from rich.console import Console
 from bench.reading.scenario import Scenario
 from bench.reporting.metrics import METRICS
 from bench.reporting.pairs import COMPARISONS, pair
-from bench.reporting.sections import comparisons, headline, page, skipped
+from bench.reporting.sections import comparisons, failures, headline, page, skipped
 from bench.reporting.statistics import holm
 from bench.reporting.tables import terminal
+from worlds.types import Outcome
 
 READS = (
     "variant", "kind", "agent", "episode", "outcome", "steps", "budget_steps", "length", "shortest",
@@ -54,7 +55,7 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
         folder: made if it is not there.
 
     Returns:
-        The summary, for `print_tables`.
+        The summary.
     """
     from bench.reporting.plots import draw  # noqa: PLC0415  it imports matplotlib, which the tables do not need
 
@@ -66,12 +67,21 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
     return table
 
 
-def print_tables(table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
-    """Print what a summary says: the results, the comparisons, and who was skipped; nothing is cut off."""
+def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
+    """Print the results, the comparisons, who was skipped, and who crashed or hung; nothing is cut off.
+
+    Args:
+        frame: as for `summary`.
+        table: its summary.
+        scenario: what was measured.
+        console: where to.
+    """
+    broken = frame[frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name])]
     for title, lines in (
         ("Results", headline(table, scenario, short=True)),
         ("Paired", comparisons(table, scenario)),
         ("Skipped", skipped(scenario)),
+        ("Crashed or hung", failures(broken)),
     ):
         if lines.rows:
             console.print(terminal(title, lines, WIDTH if console.width < WIDTH else None), crop=False)

@@ -132,16 +132,17 @@ def test_nothing_recorded_yet_is_a_report_too(scenario: Scenario, tmp_path: Path
 
 
 @pytest.mark.parametrize("width", [40, 120])
-def test_the_terminal_shows_results_comparisons_and_who_was_skipped(
+def test_the_terminal_shows_results_comparisons_and_who_did_not_play(
     width: int, frame: pd.DataFrame, scenario: Scenario
 ) -> None:
     """Each line fits 120 columns, and each row of the page has its line; a narrower terminal cuts nothing off."""
     console = Console(width=width, file=StringIO())
-    print_tables(summary(frame, scenario), scenario, console)
+    print_tables(frame, summary(frame, scenario), scenario, console)
     lines = [" ".join(line.split()) for line in console.file.getvalue().splitlines()]
     assert "short memoryless 2 50.0 [9.5, 90.5] 12 1.500 1.500 0.250 2.5 ms 4 ms 2 KiB 0.500" in lines
     assert "short memoryless astar -50.0 [-100.0, 56.3] 0 1 0.500 0.500 1.500 1" in lines
     assert "long random_walk no legs" in lines
+    assert "short memoryless CRASHED 1 ValueError: a | b (act, line 3)" in lines
     assert max(map(len, console.file.getvalue().splitlines())) <= 120
 
 
