@@ -10,11 +10,11 @@ import numpy as np
 
 from planners.route import Route
 from worlds.belief import KnownMap, fuse
+from worlds.distances import FAR
 from worlds.kernel import kernel
 from worlds.settings import Settings
 from worlds.types import BLOCKED, DELTAS, Array, Cell, Move, Observation, Task
 
-FAR = np.iinfo(np.int32).max
 STEPS = np.array(DELTAS, np.int64)  # [4, 2]
 
 

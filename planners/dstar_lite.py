@@ -5,8 +5,9 @@ from typing import ClassVar
 import numpy as np
 
 from planners.astar import glance
-from planners.incremental import EMPTY, FAR, descend, replan
+from planners.incremental import EMPTY, descend, replan
 from worlds.belief import KnownMap
+from worlds.distances import FAR
 from worlds.settings import Settings
 from worlds.types import Array, Cell, Move, Observation, Task
 

@@ -20,10 +20,10 @@ Words used here (the paper's)
 
 import numpy as np
 
+from worlds.distances import FAR
 from worlds.kernel import kernel
 from worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell
 
-FAR = np.iinfo(np.int32).max
 EMPTY = 64  # rows of a new U
 STAR = ((0, 0), *DELTAS)  # a cell and its neighbours
 

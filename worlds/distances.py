@@ -3,7 +3,7 @@
 import numpy as np
 
 from worlds.kernel import kernel
-from worlds.types import Array, Cell
+from worlds.types import DELTAS, Array, Cell
 
 FAR = np.iinfo(np.int32).max
 """The distance of a cell that was not reached."""
@@ -32,7 +32,7 @@ def distances(blocked: Array, source: Cell, target: Cell) -> Array:
         head += 1
         if r == target[0] and c == target[1]:
             break
-        for down, right in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+        for down, right in DELTAS:
             i, j = r + down, c + right
             if 0 <= i < height and 0 <= j < width and distance[i, j] == FAR and not blocked[i, j]:
                 distance[i, j] = distance[r, c] + 1

@@ -1,15 +1,30 @@
 """`@kernel`: a loop compiled by Numba, kept on disk where a place can be written.
 
-Numba's cache knows a kernel by its own file alone, so a kernel calls only kernels of its own file: an edit to a callee
-elsewhere would go unnoticed.
+Numba knows a cached kernel by its own file alone; an edit to a callee or to a constant of another file would go
+unnoticed. So the folder of the cache is named after all the sources that kernels can come from.
 """
 
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from numba import njit
+from numba import config, njit
+
+from worlds.streams import digest
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+HERE = Path(__file__).parent
+
+
+def _sources() -> str:
+    files = sorted(file for name in ("worlds", "planners", "learned") for file in HERE.with_name(name).glob("*.py"))
+    return digest(*(file.read_text("utf-8") for file in files))[:16]
+
+
+if "NUMBA_CACHE_DIR" not in os.environ:
+    config.CACHE_DIR = str(HERE / "__pycache__" / _sources())  # type: ignore[attr-defined]  # Numba makes it on import
 
 
 def kernel(function: F) -> F:

@@ -42,9 +42,21 @@ def test_kernels_are_kept_beside_their_source(tmp_path: Path) -> None:
     """Where that can be written, the compiled form is on disk after the first call."""
     package = copy(tmp_path)
     file, cache, *result = run(tmp_path)
-    assert (file, cache) == (str(package / "belief.py"), str(package / "__pycache__"))
+    assert file == str(package / "belief.py")
+    assert Path(cache).is_relative_to(package / "__pycache__")
     assert result == RESULT
-    assert list(package.glob("__pycache__/belief.look-*.nbc"))
+    assert list(Path(cache).glob("belief.look-*.nbc"))
+
+
+def test_an_edit_of_another_file_is_noticed(tmp_path: Path) -> None:
+    """A constant that a kernel takes from elsewhere is compiled into it, and compiled anew when it changes."""
+    package = copy(tmp_path)
+    before = run(tmp_path)
+    types = package / "types.py"
+    types.write_text(types.read_text().replace("UNKNOWN, FREE, BLOCKED = 0, 1, 2", "UNKNOWN, FREE, BLOCKED = 0, 1, 3"))
+    after = run(tmp_path)
+    assert before[1] != after[1]
+    assert after[2] == RESULT[0].replace("2", "3")
 
 
 def test_kernels_run_where_nothing_can_be_written(tmp_path: Path) -> None:
