@@ -66,7 +66,7 @@ class GridWorld:
     rules: GridRules
     optimum: int
     posts: frozenset[Cell]
-    """Cells of which one must be visited before the goal counts: a tunnel's end wall is in view there. May be empty."""
+    """Cells of which one must be visited before the goal counts: in a tunnel, from where its end wall is seen."""
 
     def reset(self) -> GridState:
         """The state before the first decision."""
@@ -79,7 +79,7 @@ class GridWorld:
         if sensor.false_readings:
             view = misread(view, rng.random(view.shape) < sensor.false_readings)
         view.setflags(write=False)
-        return Observation(state.step, state.place, view, state.blocked)
+        return Observation(state.step, state.place, view[:], state.blocked)  # who does not own it cannot unlock it
 
     def step(self, state: GridState, action: Any, rng: np.random.Generator) -> Step:
         """Move, or slip, or run into an obstacle.

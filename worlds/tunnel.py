@@ -27,8 +27,8 @@ class Tunnel(DrawnMaps):
     """A walled corridor in a free area; the agent starts in it, and its goal lies at, or behind, the far end.
 
     The mouth faces any of the four directions. Turns to the left and to the right are equally likely, but the corridor
-    never runs back towards its mouth. The goal counts only after a cell of the end wall was in view; where the far end
-    is open there is no such wall, and the goal always counts.
+    never runs back towards its mouth. The goal counts only after a cell of the end wall was in view from inside the
+    corridor; where the far end is open there is no such wall, and the goal always counts.
     """
 
     length: PositiveRange
