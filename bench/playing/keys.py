@@ -2,6 +2,7 @@
 
 import sys
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 from pydantic import BaseModel
@@ -45,16 +46,19 @@ def agent_key(entry: Entry) -> str:
 
 
 def _sources(module: str) -> str:
-    """The digest of the package of a module, or of the file of a module that is in no package."""
-    path = Path(str(sys.modules[module].__file__))
-    return _folder(path.parent) if "." in module else _file(path)
+    """The digest of the whole package that a module is in, or of the file of a module that is in none."""
+    top = sys.modules[module.partition(".")[0]]
+    if hasattr(top, "__path__"):
+        return digest(*(_folder(Path(folder)) for folder in top.__path__))
+    return _file(Path(str(top.__file__)))
 
 
 @cache
 def _folder(folder: Path) -> str:
-    return digest(*(part for file in sorted(folder.glob("*.py")) for part in (file.name, _file(file))))
+    files = sorted(folder.rglob("*.py"))
+    return digest(*(part for file in files for part in (file.relative_to(folder).as_posix(), _file(file))))
 
 
 @cache
 def _file(file: Path) -> str:
-    return digest(file.read_text("utf-8"))
+    return sha256(file.read_bytes()).hexdigest()

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from inspect import getfile
 from operator import index
 from time import perf_counter
 from traceback import extract_tb
@@ -14,9 +15,13 @@ from bench.playing.episode import Episode
 from bench.playing.judge import GridJudge
 from bench.playing.keys import agent_key, world_key
 from bench.reading.scenario import Entry, Scenario, Variant
+from planners import PLANNERS
 from planners.astar import AStar
 from worlds.streams import stream
 from worlds.types import Agent, AgentSettings, Outcome, World
+
+TOLD = 300
+"""Characters of an agent's error that a row holds at most."""
 
 JUDGES = {"grid": GridJudge}
 """What judges the decisions of an agent, by the kind of world; other kinds are not judged."""
@@ -52,8 +57,17 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
         _warm_up(variant, entry)
         start_and_roll(world, entry.settings, variant, episode, record, judge)
     except BaseException as error:  # noqa: BLE001  an agent may raise anything, and nobody else speaks to a worker
-        record.outcome, record.detail = Outcome.CRASHED, _sentence(error)
+        record.outcome, record.detail = Outcome.CRASHED, _sentence(error, entry.settings)
     return _episode(scenario, variant, entry, episode, workers, record, judge)
+
+
+def prepare(scenario: Scenario) -> None:
+    """Compile what ships with the project before the limit of any episode counts; a user's agent warms up under it."""
+    for variant in scenario.variants[:1]:
+        _facts(variant, 0)
+        for entry in variant.agents:
+            if entry.settings is not None and entry.target in PLANNERS.values():
+                _warm_up(variant, entry)
 
 
 def lost(
@@ -155,9 +169,14 @@ def _warm_up(variant: Variant, entry: Entry) -> None:
     """One decision on a throw-away task in each process, so that no compilation and no first call is ever timed."""
     assert entry.settings is not None
     practice, rng = _practice(variant), episode_stream(variant, "warm-up", 0)
-    agent = entry.settings.start(practice.task, rng)
-    agent.act(practice.sense(practice.reset(), rng))
+    agent, state = entry.settings.start(practice.task, rng), practice.reset()
+    observation = practice.sense(state, rng)
+    action = agent.act(observation)
     agent.memory_bytes()
+    if action is not None:
+        practice.step(state, action, rng)
+        if practice.task.kind in JUDGES:
+            JUDGES[practice.task.kind](practice.task).see(observation, action)
 
 
 def _count(number: Any, name: str) -> int:
@@ -165,16 +184,23 @@ def _count(number: Any, name: str) -> int:
         count = index(number)
     except TypeError:
         count = -1
-    if count < 0:
-        raise TypeError(f"{name} returned {number!r} ({type(number).__name__}); expected a whole number of at least 0")
+    if not 0 <= count < 2**63:  # what a row can hold
+        raise TypeError(
+            f"{name} returned {number!r} ({type(number).__name__}); expected a whole number from 0 to 2**63 - 1"
+        )
     return count
 
 
-def _sentence(error: BaseException) -> str:
-    """An agent's error in one line, with the place that raised it."""
-    last = extract_tb(error.__traceback__)[-1]
-    text = " ".join(str(error).split()) or "no text"
-    return f"{type(error).__name__}: {text} ({last.name}, line {last.lineno})"
+def _sentence(error: BaseException, settings: AgentSettings) -> str:
+    """An agent's error in one line, with the place in the agent's own file, if it comes from there."""
+    own = [frame for frame in extract_tb(error.__traceback__) if frame.filename == getfile(type(settings))]
+    place = f" ({own[-1].name}, line {own[-1].lineno})" if own else ""
+    try:
+        text = " ".join(str(error).split()) or "no text"
+    except Exception:  # noqa: BLE001  it is the agent's own class
+        text = "no text"
+    text = text.encode("utf-8", "backslashreplace").decode()  # a lone surrogate cannot be stored
+    return f"{type(error).__name__}: {text if len(text) <= TOLD else text[:TOLD] + '...'}{place}"
 
 
 def _flat(actions: list[Any]) -> tuple[float, ...]:

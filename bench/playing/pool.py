@@ -10,7 +10,7 @@ from time import sleep
 
 from pebble import ProcessPool
 
-from bench.playing.worker import begin
+from bench.playing.offspring import begin
 from bench.reading.scenario import Scenario
 
 ONE_THREAD = dict.fromkeys(

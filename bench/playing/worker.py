@@ -1,13 +1,9 @@
 """A worker process: it reads the scenario itself and plays one episode per task."""
 
-import ctypes
 import os
-import signal
-import sys
 from contextlib import suppress
 from contextvars import ContextVar
 from functools import cache
-from multiprocessing import parent_process
 from pathlib import Path
 
 from threadpoolctl import threadpool_limits
@@ -16,9 +12,6 @@ from bench.playing import loop
 from bench.playing.episode import Episode
 from bench.reading.scenario import Entry, Scenario, Variant, read_scenario
 from worlds.types import Outcome
-
-PR_SET_PDEATHSIG = 1
-"""The number of this request in Linux's `prctl`."""
 
 _TOLD: ContextVar[tuple[str, Path, int]] = ContextVar("_TOLD")
 """What `begin` was told."""
@@ -32,13 +25,12 @@ def begin(text: str, path: Path, workers: int) -> None:
         path: where it came from.
         workers: how many processes run side by side.
     """
-    die_with_parent()
     end = os._exit  # pebble overlooks a worker that ends with 0
     os._exit = lambda status: end(status or 1)
     _TOLD.set((text, path, workers))
-    with suppress(Exception):  # the first task meets the error again, and can report it
-        _scenario(text, path)
     threadpool_limits(1)
+    with suppress(Exception):  # the first task meets the error again, and can report it
+        loop.prepare(_scenario(text, path))
 
 
 def play(variant: str, agent: str, episode: int) -> Episode:
@@ -49,15 +41,6 @@ def play(variant: str, agent: str, episode: int) -> Episode:
 def lose(variant: str, agent: str, episode: int, outcome: Outcome, detail: str) -> Episode:
     """The record of an episode that took its process with it; see `bench.playing.loop.lost`."""
     return loop.lost(*_find(variant, agent), episode, _TOLD.get()[2], outcome, detail)
-
-
-def die_with_parent() -> None:
-    """Have Linux kill this process as soon as the one that started it is gone; elsewhere a closed pipe ends it."""
-    parent = parent_process()
-    if sys.platform == "linux" and parent is not None:
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent.pid:  # it was gone before the request
-            os._exit(1)
 
 
 def _find(variant_name: str, label: str) -> tuple[Scenario, Variant, Entry]:

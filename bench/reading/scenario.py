@@ -12,7 +12,7 @@ from worlds.mistake import Mistake
 from worlds.types import AgentSettings, MapFamily
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Entry:
     """One agent of a variant."""
 
@@ -25,7 +25,7 @@ class Entry:
     """Why it does not run here; empty if it does."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Variant:
     """One row of a scenario's tables."""
 
@@ -40,7 +40,7 @@ class Variant:
     seed: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
     """One file."""
 

@@ -1,5 +1,6 @@
 """The episode loop, held against episodes that were played by hand."""
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -24,6 +25,23 @@ CORNER = "S.. .#. ..G"
 """Two ways around a wall, both four cells long."""
 
 
+class UnreadableError(Exception):
+    """An error that cannot even be printed."""
+
+    def __str__(self) -> str:
+        """Fail."""
+        raise ValueError("no text")
+
+
+ERRORS = {
+    "plain": RuntimeError("no start"),
+    "unreadable": UnreadableError(),
+    "surrogate": ValueError("half of a pair: \ud800"),
+    "long": ValueError("x" * 10**6),
+}
+"""What a script may raise at its start."""
+
+
 class Script(Settings):
     """Answers what it was told to, and carries and counts what it was told to; the last value of each lasts."""
 
@@ -38,7 +56,7 @@ class Script(Settings):
     def start(self, task: Task, rng: np.random.Generator) -> "ScriptAgent":
         """An agent that reads the script from its beginning."""
         if self.start_error:
-            raise RuntimeError(self.start_error)
+            raise ERRORS[self.start_error]
         return ScriptAgent(self)
 
     def parameter_bytes(self) -> Any:
@@ -199,27 +217,32 @@ def test_a_memory_budget(scenario: Callable[..., Scenario], budget: int, outcome
     [
         ({"answers": (R, "raise")}, 1, "ValueError: one line (act, line "),
         ({"answers": (R, "exit")}, 1, "SystemExit: 3 (act, line "),
-        ({"answers": (R, 7)}, 1, "TypeError: act returned 7 (int); expected a Move or None (step, line "),
-        ({"start_error": "no start"}, 0, "RuntimeError: no start (start, line "),
+        ({"answers": (R, 7)}, 1, "TypeError: act returned 7 (int); expected a Move or None"),
+        ({"start_error": "plain"}, 0, "RuntimeError: no start (start, line "),
         (
             {"answers": (R, R), "carries": (0, -1)},
             0,
-            "TypeError: memory_bytes returned -1 (int); expected a whole number of at least 0 (_count, line ",
+            "TypeError: memory_bytes returned -1 (int); expected a whole number from 0 to 2**63 - 1",
         ),
         (
             {"answers": (R, R), "carries": (0, 2.0)},
             0,
-            "TypeError: memory_bytes returned 2.0 (float); expected a whole number of at least 0 (_count, line ",
+            "TypeError: memory_bytes returned 2.0 (float); expected a whole number from 0 to 2**63 - 1",
+        ),
+        (
+            {"answers": (R, None), "searched": 2**63},
+            1,
+            "TypeError: search_nodes returned 9223372036854775808 (int); expected a whole number from 0 to 2**63 - 1",
         ),
         (
             {"answers": (R, None), "searched": "many"},
             1,
-            "TypeError: search_nodes returned 'many' (str); expected a whole number of at least 0 (_count, line ",
+            "TypeError: search_nodes returned 'many' (str); expected a whole number from 0 to 2**63 - 1",
         ),
         (
             {"answers": (R,), "learned": None},
             0,
-            "TypeError: parameter_bytes returned None (NoneType); expected a whole number of at least 0 (_count, line ",
+            "TypeError: parameter_bytes returned None (NoneType); expected a whole number from 0 to 2**63 - 1",
         ),
     ],
 )
@@ -230,10 +253,24 @@ def test_an_agent_that_fails_costs_its_episode(
     made = scenario(CORNER, Script(**script))
     row = first(made)
     assert row.outcome == "CRASHED"
-    assert row.detail.startswith(detail)
-    assert row.detail.removeprefix(detail).rstrip(")").isdigit()
+    assert re.fullmatch(re.escape(detail) + (r"\d+\)" if detail.endswith("line ") else ""), row.detail)
     assert row.steps == steps or script.get("carries")
     assert (row.shortest, row.reference_length) == (4.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("error", "detail"),
+    [
+        ("unreadable", "UnreadableError: no text"),
+        ("surrogate", r"ValueError: half of a pair: \ud800"),
+        ("long", f"ValueError: {'x' * 300}..."),
+    ],
+)
+def test_any_error_of_an_agent_is_one_line_that_can_be_stored(
+    scenario: Callable[..., Scenario], error: str, detail: str
+) -> None:
+    """Whatever its text is, or is not."""
+    assert first(scenario(CORNER, Script(start_error=error))).detail.startswith(detail)
 
 
 def test_a_lost_episode_has_the_facts_of_its_world(scenario: Callable[..., Scenario]) -> None:
