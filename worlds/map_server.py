@@ -5,15 +5,22 @@ Every mistake in a file is a `MapError` that reads `FILE: got X; expected Y`.
 
 from io import BytesIO
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import yaml
 from PIL import Image, UnidentifiedImageError
-from pydantic import BaseModel, ValidationError
+from pydantic import AfterValidator, BaseModel, Field, ValidationError, ValidationInfo
+from pydantic_core import PydanticCustomError
 
 from worlds.settings import Probability
 from worlds.types import Array, MapError
+
+
+def _below_occupied(free: float, info: ValidationInfo) -> float:
+    if free >= info.data.get("occupied_thresh", 1):
+        raise PydanticCustomError("order", "less than occupied_thresh")
+    return free
 
 
 class Header(BaseModel, frozen=True):
@@ -21,7 +28,7 @@ class Header(BaseModel, frozen=True):
 
     image: Path
     """A file, relative to the YAML's folder."""
-    resolution: float
+    resolution: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     """Side of a cell [m]."""
     origin: tuple[float, float, float]
     """Pose of the lower left corner ([m], [m], [rad])."""
@@ -29,7 +36,7 @@ class Header(BaseModel, frozen=True):
     """Whether white is occupied."""
     occupied_thresh: Probability
     """Cells above are occupied."""
-    free_thresh: Probability
+    free_thresh: Annotated[Probability, AfterValidator(_below_occupied)]
     """Cells below are free; what is neither is unknown."""
     mode: Literal["trinary"] = "trinary"
 
@@ -45,7 +52,7 @@ def read_header(path: Path, contents: bytes) -> Header:
             raise MapError(f"{path}: got no {place!r}; expected {', '.join(Header.model_fields)}") from None
         wanted = first["msg"].removeprefix("Input should be ")
         raise MapError(f"{path}: {place or 'all'}: got {str(first['input'])[:40]!r}; expected {wanted}") from None
-    except (yaml.YAMLError, ValueError) as error:  # ValueError: a date that is none
+    except (yaml.YAMLError, ValueError, RecursionError) as error:  # a date that is none, endless brackets
         mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
         line = mark.line + 1 if mark else 1
         raise MapError(f"{path}:{line}: got text that is no YAML; expected lines such as 'negate: 0'") from None
