@@ -14,7 +14,7 @@ def folder() -> Path:
 
 
 def find(names: list[str] | None) -> list[Path]:
-    """The scenario files that `names` stand for, each once.
+    """The scenario files that `names` stand for, each once, under the path it is first named by.
 
     Args:
         names: files, folders (all `*.yaml` below them), or stems of shipped files; None or empty: all that are shipped.
@@ -22,8 +22,11 @@ def find(names: list[str] | None) -> list[Path]:
     Raises:
         Mistake: a name that stands for nothing; the nearest shipped one is told.
     """
-    found = [path for name in names or [str(folder())] for path in _find_one(name)]
-    return list(dict.fromkeys(found))
+    found: dict[Path, Path] = {}
+    for name in names or [str(folder())]:
+        for path in _find_one(name):
+            found.setdefault(path.resolve(), path)
+    return list(found.values())
 
 
 def _find_one(name: str) -> list[Path]:
@@ -38,7 +41,8 @@ def _find_one(name: str) -> list[Path]:
     shipped = {file.stem: file for file in sorted(folder().rglob("*.yaml"))}
     if name in shipped:
         return [shipped[name]]
-    near = get_close_matches(name, shipped, n=1)
+    file = f"{name}.yaml"
+    near = [file] if Path(file).is_file() else get_close_matches(name, shipped, n=1)
     raise Mistake(
         f"{name}: got no such file; expected a scenario file, a folder of them, or one of {', '.join(shipped)}."
         + (f" Did you mean {near[0]}?" if near else "")
