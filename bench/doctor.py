@@ -29,7 +29,7 @@ def _packages() -> Table:
     table = Table("package", "installed", "needed for", title="Packages")
     for need in map(Requirement, _requirements()):
         extra = str(need.marker).rpartition("extra == ")[2].strip('"') if need.marker else ""
-        missing = f'missing: pip install "{PROJECT}\\[{extra}]"' if extra else "missing: pip install " + PROJECT
+        missing = f'missing: pip install ".\\[{extra}]"' if extra else "missing: pip install ."
         table.add_row(need.name, _version(need.name) or missing, f"the extra {extra}" if extra else "everything")
     return table
 
@@ -56,7 +56,7 @@ def _machine() -> Table:
     table.add_row("CPUs at hand", str(len(os.sched_getaffinity(0))))
     for pool in threadpool_info():
         table.add_row(f"threads of {pool['internal_api']} (main process)", str(pool["num_threads"]))
-    maps = os.environ.get("FOGBENCH_MAPS", "not set: the scenarios under real/ are skipped")
+    maps = os.environ.get("FOGBENCH_MAPS") or "not set: the scenarios under real/ are skipped"
     table.add_row("FOGBENCH_MAPS", maps)
     table.add_row("A* over an empty 512x512 map", f"{1e3 * _seconds_of_search():.2f} ms")
     table.add_row("a 1024x1024 matrix product", f"{2 * 1.024**3 / _seconds_of_product():.1f} GFLOP/s")

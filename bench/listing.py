@@ -4,7 +4,7 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
-from bench.reading.plugins import agents, families, first_sentence
+from bench.reading.tables import agents, families, first_sentence
 from bench.shipped import find, folder
 
 

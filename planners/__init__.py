@@ -11,4 +11,4 @@ PLANNERS = {
 """Planners that ship with the project, as `module:class`."""
 
 EXTRAS = {"rrt_star": "ompl"}
-"""The extra of the project (`pip install "fogbench[ompl]"`) that a planner needs."""
+"""The extra of the project (`pip install ".[ompl]"`) that a planner needs."""

@@ -30,6 +30,15 @@ def read_block(settings: type[Block], value: Value, folder: Path, faults: list[F
         details = error.errors(include_url=False)
         faults.extend(fault for detail in details for fault in _fault(detail, value, shape(settings)))
         return None
+    except Exception as error:  # noqa: BLE001  a user's class may raise anything
+        if not any(inner.unset for inner in value.below()):
+            faults.append(value.wrong(f"settings that its class can read; it raises {raised(error)}"))
+        return None
+
+
+def raised(error: BaseException) -> str:
+    """What the code of a user raised, in one line."""
+    return f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}"
 
 
 def near(name: str, names: Iterable[str]) -> str:

@@ -15,30 +15,35 @@ VARIABLE = re.compile(r"\$\{(\w+)\}")
 SHOWN = 60
 """Characters of a value that an error shows at most."""
 
+DEEPEST, MOST = 100, 100_000
+"""Levels of a file, and values in it with those that its aliases repeat."""
+
+TOO_DEEP, TOO_MANY = f"nested more than {DEEPEST} deep", f"more than {MOST:,} values, aliases counted"
+
 
 def parse(text: str, faults: list[Fault]) -> Value | None:
     """The mapping that a file is; None where it is none. What is wrong with it is added to `faults`."""
-    node = _compose(text, faults)
-    page = _Document(text, faults).value(node, "", None, ()) if node else None
+    page = _read(text, faults)
     if page is None or isinstance(page.content, dict):
         return page
     faults.append(page.wrong("a mapping"))
     return None
 
 
-def _compose(text: str, faults: list[Fault]) -> yaml.Node | None:
+def _read(text: str, faults: list[Fault]) -> Value | None:
     try:
         node = yaml.compose(text, yaml.SafeLoader)
+        if node is not None:
+            return _Document(text, faults).value(node, "", None, ())
+        faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
     except yaml.MarkedYAMLError as error:
         problem = (error.problem or "").removeprefix("but ")
         faults.append(_broken(_spot(error.problem_mark), problem))
     except yaml.reader.ReaderError as error:
         before = text[: error.position].split("\n")
         faults.append(_broken(Spot(len(before), len(before[-1]) + 1), f"{error.reason}: {chr(error.character)!r}"))
-    else:
-        if node is None:
-            faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
-        return node
+    except RecursionError:
+        faults.append(_broken(Spot(1, 1), TOO_DEEP))
     return None
 
 
@@ -56,9 +61,14 @@ class _Document:
     def __init__(self, text: str, faults: list[Fault]) -> None:
         self.text = text
         self.faults = faults
+        self.values = 0
 
     def value(self, node: yaml.Node, path: str, key: Spot | None, above: tuple[yaml.Node, ...]) -> Value:
         """A node with all below it; an aliased node is a value of its own wherever it is used."""
+        self.values += 1
+        if len(above) > DEEPEST or self.values > MOST:
+            problem = TOO_DEEP if len(above) > DEEPEST else TOO_MANY
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
         spot = _spot(node.start_mark)
         value = Value(None, path, spot, key or spot, self._written(node))
         if node in above:
@@ -98,10 +108,10 @@ class _Document:
 
 
 def _scalar(node: yaml.ScalarNode, value: Value) -> Value:
-    """The text of a node; only a plain `null`, `~` or nothing at all is None."""
+    """The text of a node, in which an empty variable is none; only a plain `null`, `~` or nothing at all is None."""
     if node.style is None and node.tag == "tag:yaml.org,2002:null":
         return value
     variables = tuple(VARIABLE.findall(node.value))
-    text = VARIABLE.sub(lambda found: os.environ.get(found[1], found[0]), node.value)
-    unset = next((name for name in variables if name not in os.environ), "")
+    text = VARIABLE.sub(lambda found: os.environ.get(found[1]) or found[0], node.value)
+    unset = next((name for name in variables if not os.environ.get(name)), "")
     return replace(value, content=text, variables=variables, unset=unset)

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from worlds.settings import Positive, Settings
 
@@ -13,14 +13,30 @@ def _file_name(name: str) -> str:
     return name
 
 
-class Published(Settings):
-    """Numbers to print beside the measured ones: each metric by the agent's label and the variant's name."""
+def _infinity(number: Any) -> Any:
+    return "inf" if number == ".inf" else number  # as YAML writes it
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, dict[str, dict[str, float]]]
+
+Number = Annotated[float, Field(ge=0, allow_inf_nan=True), BeforeValidator(_infinity)]
+"""A number from 0; `.inf` is one."""
+
+Numbers = Annotated[dict[str, dict[str, Number]], Field(default_factory=dict)]
+"""By the agent's label and the variant's name."""
+
+
+class Published(Settings):
+    """Numbers to print beside the measured ones, by the name of the metric."""
 
     source: str
     """Where they were published."""
+    success: Numbers
+    """Share of episodes that end at the goal [%]."""
+    path_ratio: Numbers
+    """Path length over the optimum's."""
+    reference_ratio: Numbers
+    """Path length over that of a reference agent."""
+    test_error: Numbers
+    """Share of wrong decisions [%]."""
 
 
 class Page(Settings):

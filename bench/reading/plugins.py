@@ -3,43 +3,17 @@
 Nothing is imported before a scenario names it.
 """
 
-import ast
 import sys
-from collections.abc import Mapping
-from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
 
-from bench.reading.blocks import near, one_of
-from planners import EXTRAS, PLANNERS
-from worlds import FAMILIES, KINDS
+from bench.reading.blocks import near, one_of, raised
+from bench.reading.tables import Table
+from planners import EXTRAS
 from worlds.settings import Settings
 from worlds.streams import digest
-
-
-class Table(NamedTuple):
-    """One sort of plug-in."""
-
-    shipped: Mapping[str, str]
-    """Name to `module:class`."""
-    groups: tuple[str, ...]
-    """Entry points of other packages."""
-    members: tuple[str, ...]
-    """What a class must have."""
-
-    def targets(self) -> dict[str, str]:
-        """All names with their `module:class`; the project's own come first and cannot be replaced."""
-        others = {name: target for group in self.groups for name, target in registered(group).items()}
-        return {**self.shipped, **{name: target for name, target in others.items() if name not in self.shipped}}
-
-
-FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks"))
-AGENT = Table(PLANNERS, ("fogbench.planners", "fogbench.learned"), ("kinds", "start", "parameter_bytes"))
-KIND = Table(KINDS, (), ())
 
 
 class PluginError(ValueError):
@@ -53,22 +27,6 @@ class PluginError(ValueError):
 
 class MissingPackageError(Exception):
     """A plug-in that needs a package which is not installed; the text says which, and how to get it."""
-
-
-@cache
-def registered(group: str) -> dict[str, str]:
-    """The entry points of a group: name to `module:class`. They are looked for once, which takes a while."""
-    return {point.name: point.value for point in entry_points(group=group)}
-
-
-def families() -> dict[str, str]:
-    """Map families: name to `module:class`."""
-    return FAMILY.targets()
-
-
-def agents() -> dict[str, str]:
-    """Agents: name to `module:class`."""
-    return AGENT.targets()
 
 
 def target(table: Table, name: str, folder: Path) -> str:
@@ -112,18 +70,6 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
     return found
 
 
-def first_sentence(target: str) -> str:
-    """The first line of the docstring of a class, without importing it; empty if it cannot be found."""
-    place, _, class_name = target.rpartition(":")
-    try:
-        spec = find_spec(place)
-        tree = ast.parse(Path(spec.origin).read_text("utf-8") if spec and spec.origin else "")
-    except (ImportError, OSError, SyntaxError, ValueError):
-        return ""
-    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
-    return (ast.get_docstring(classes[0]) or "").partition("\n")[0] if classes else ""
-
-
 def _import(name: str, place: str) -> ModuleType:
     try:
         return _from_file(Path(place)) if place.endswith(".py") else import_module(place)
@@ -131,23 +77,31 @@ def _import(name: str, place: str) -> ModuleType:
         missing = error.name or ""
         if f"{place}.".startswith(f"{missing}."):
             raise PluginError(f"a module that is installed; there is no {missing}") from None
+        if _lies_beside(Path(place), missing):
+            alone = f"one file alone, or a package that is installed; it imports {missing}, which lies beside it"
+            raise PluginError(alone) from None
         raise MissingPackageError(_how_to_get(name, missing)) from None
     except FileNotFoundError as error:
         if error.filename != place:
-            raise PluginError(_raises(error)) from None
+            raise PluginError(_importable(error)) from None
         raise PluginError(f"an existing file (looked for {place})") from None
-    except Exception as error:  # noqa: BLE001  a user's file may raise anything
-        raise PluginError(_raises(error)) from None
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a user's file may raise anything
+        raise PluginError(_importable(error)) from None
 
 
-def _raises(error: Exception) -> str:
-    first = str(error).strip().partition("\n")[0]
-    return f"code that can be imported; it raises {type(error).__name__}: {first}"
+def _importable(error: BaseException) -> str:
+    return f"code that can be imported; it raises {raised(error)}"
+
+
+def _lies_beside(file: Path, module: str) -> bool:
+    """Whether a module that was not found is in the folder of the file that asked for it."""
+    place = file.parent / module.partition(".")[0]
+    return file.suffix == ".py" and place != file.parent and (place.is_dir() or place.with_suffix(".py").is_file())
 
 
 def _how_to_get(name: str, package: str) -> str:
     if name in EXTRAS:
-        return f'needs the extra {EXTRAS[name]}: pip install "fogbench[{EXTRAS[name]}]"'
+        return f'needs the extra {EXTRAS[name]}: pip install ".[{EXTRAS[name]}]"'
     return f"needs the package {package}, which is not installed"
 
 

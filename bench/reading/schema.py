@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from bench.reading.page import CONDITIONS, VARIED, Page
-from bench.reading.plugins import AGENT, FAMILY, KIND, MissingPackageError, PluginError, Table, load
+from bench.reading.plugins import MissingPackageError, PluginError, load
 from bench.reading.shapes import Lenient, Schema
+from bench.reading.tables import AGENT, FAMILY, KIND, Table
 from worlds.settings import Settings
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

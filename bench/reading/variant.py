@@ -8,8 +8,9 @@ from typing import Any, NamedTuple, cast
 
 from bench.reading.blocks import Block, near, one_of, read_block
 from bench.reading.page import CONDITIONS, Page
-from bench.reading.plugins import AGENT, FAMILY, KIND, MissingPackageError, PluginError, Table, load, target
+from bench.reading.plugins import MissingPackageError, PluginError, load, target
 from bench.reading.positions import Fault, Value, join
+from bench.reading.tables import AGENT, FAMILY, KIND, Table
 from worlds.settings import Settings
 from worlds.types import AgentSettings, MapFamily
 
@@ -45,7 +46,7 @@ class Reading:
     @property
     def published(self) -> dict[str, Any]:
         """The numbers to print beside the measured ones."""
-        return self.page.published.model_dump() if self.page and self.page.published else {}
+        return self.page.published.model_dump(exclude_unset=True) if self.page and self.page.published else {}
 
     def _family(self, maps: Value | None) -> MapFamily | None:
         if maps is None or not isinstance(maps.content, dict):

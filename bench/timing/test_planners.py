@@ -12,8 +12,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from bench.playing.loop import Record, episode_stream, episode_world, start_and_roll
 from bench.playing.replay import retrace
-from bench.reading.plugins import AGENT, load
+from bench.reading.plugins import load
 from bench.reading.scenario import read_scenario
+from bench.reading.tables import AGENT
 from bench.shipped import find
 from planners import PLANNERS
 from planners.astar import search

@@ -4,12 +4,14 @@ import multiprocessing
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from bench.reading.plugins import AGENT, agents, families, first_sentence, load, registered, target
+from bench.reading.plugins import load, target
 from bench.reading.scenario import Scenario, ScenarioError, read_scenario
+from bench.reading.tables import AGENT, agents, families, first_sentence, registered
 from planners import PLANNERS
 from worlds import FAMILIES
 
@@ -78,6 +80,7 @@ FAMILY_FILE = '''
 from typing import ClassVar
 from pydantic import model_validator
 from worlds.blobs import Blobs
+from worlds.layout import DrawnMaps
 
 
 class Sparse(Blobs):
@@ -92,6 +95,15 @@ class Sparse(Blobs):
 
 class Sea(Blobs):
     kind: ClassVar[str] = "sea"
+
+
+class Bare(DrawnMaps):
+    """Draws nothing."""
+
+
+class Late(Blobs):
+    def model_post_init(self, context):
+        raise RuntimeError("no lamp\\nat all")
 '''
 
 POINTS = """
@@ -182,6 +194,15 @@ def test_an_agent_of_another_kind_of_world_is_skipped_with_its_reason(read: Read
             "./opens.py:Mine",
             "code that can be imported; it raises FileNotFoundError: [Errno 2] No such file or directory: 'weights'.",
         ),
+        ("./leaves.py:Mine", "code that can be imported; it raises SystemExit: 3."),
+        (
+            "./helped.py:Mine",
+            "one file alone, or a package that is installed; it imports my_lamp, which lies beside it.",
+        ),
+        (
+            "./packed.py:Mine",
+            "one file alone, or a package that is installed; it imports my_lamps, which lies beside it.",
+        ),
         ("planners.nowhere:Mine", "a module that is installed; there is no planners.nowhere."),
         ("nowhere.at_all:Mine", "a module that is installed; there is no nowhere."),
         ("planners.astar:Astar", "a class of planners.astar, which has no Astar. Did you mean AStar?"),
@@ -194,6 +215,11 @@ def test_what_is_wrong_with_a_class_of_a_user_is_one_line(
     (tmp_path / "broken.py").write_text("x = (\n")
     (tmp_path / "raises.py").write_text("1 / 0\n")
     (tmp_path / "opens.py").write_text("open('weights')\n")
+    (tmp_path / "leaves.py").write_text("import sys\nsys.exit(3)\n")
+    (tmp_path / "my_lamp.py").touch()
+    (tmp_path / "helped.py").write_text("import my_lamp\n")
+    (tmp_path / "my_lamps").mkdir()
+    (tmp_path / "packed.py").write_text("from my_lamps.light import beam\n")
     expected = expected.replace("{folder}", str(tmp_path))
     assert line(read, agent) == f"4:17  agents[1]: got {agent}; expected {expected}"
 
@@ -241,6 +267,22 @@ def test_the_text_of_a_users_error_is_what_was_expected(read: Read) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("family", "settings", "error"),
+    [
+        ("Bare", "{}", "TypeError: Can't instantiate abstract class Bare"),
+        ("Late", "{size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}", "RuntimeError: no lamp."),
+    ],
+)
+def test_whatever_a_class_raises_is_told_at_its_settings(family: str, settings: str, error: str, read: Read) -> None:
+    """A family that cannot be made, or that fails after its fields were read."""
+    found = line(
+        read, old="blobs: {size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}", new=f"./maps.py:{family}: {settings}"
+    )
+    expected = f"settings that its class can read; it raises {error}"
+    assert found.startswith(f"2:24  maps../maps.py:{family}: got {settings}; expected {expected}")
+
+
 def test_an_agent_whose_package_is_missing_is_skipped_with_its_reason(read: Read, tmp_path: Path) -> None:
     """The others play."""
     (tmp_path / "needs.py").write_text("from fog_lamp.light import beam\n")
@@ -256,7 +298,7 @@ def test_a_missing_extra_is_named_with_the_way_to_get_it(read: Read, monkeypatch
     Path("fog_shop.py").write_text("import fog_lamp\n")
     monkeypatch.syspath_prepend(Path.cwd())
     (_, agent) = read("lamp").variants[0].agents
-    assert (agent.label, agent.skipped) == ("lamp", 'needs the extra light: pip install "fogbench[light]"')
+    assert (agent.label, agent.skipped) == ("lamp", 'needs the extra light: pip install ".[light]"')
 
 
 def test_the_same_file_is_loaded_once_and_two_of_one_name_do_not_clash(tmp_path: Path) -> None:
@@ -278,7 +320,7 @@ def test_a_spawned_process_reads_the_same_scenario(read: Read, tmp_path: Path) -
     here = read("./mine.py:Mine: {depth: 5}")
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         there = pool.submit(read_scenario, here.text, here.path).result()
-    assert there == here
+    assert asdict(there) == asdict(here)
 
 
 def test_a_file_that_fails_leaves_nothing_behind(read: Read, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or
 AGENTS = f"one of {', '.join(planners.PLANNERS)}, or a class as file.py:Class or module:Class"
 
 KEYS = "name, about, maps, sensor, rules, tasks, budget, variants, agents, reference, episodes, seed, published"
+PUBLISHED = "source, success, path_ratio, reference_ratio, test_error"
 VARIED = "maps, sensor, rules, tasks, budget, agents, reference, episodes, seed"
 
 GOOD = """\
@@ -238,7 +239,13 @@ BROKEN = [
         "esy: 96.3",
         ["21:20  published.success.MACN: got esy; expected one of easy, hard. Did you mean easy?"],
     ),
-    ("easy: 96.3", "easy: most", ["21:26  published.success.MACN.easy: got most; expected a number."]),
+    ("easy: 96.3", "easy: most", ["21:26  published.success.MACN.easy: got most; expected a number of at least 0."]),
+    ("easy: 96.3", "easy: .nan", ["21:26  published.success.MACN.easy: got .nan; expected a number of at least 0."]),
+    (
+        "  success:",
+        "  sucess:",
+        [f"21:3  published: got sucess; expected one of {PUBLISHED}. Did you mean success?"],
+    ),
     ("  success: {MACN: {easy: 96.3}}", "  success: 96.3", ["21:12  published.success: got 96.3; expected a mapping."]),
     (
         "seed: 0",
@@ -288,6 +295,11 @@ BROKEN = [
 """What is written in GOOD, what is written in its place, and the lines about it, without the name of the file."""
 
 
+BOMB = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
+    f"a{level}: &a{level} [{', '.join([f'*a{level - 1}'] * 10)}]\n" for level in range(1, 9)
+)
+
+
 def mistakes(text: str) -> list[str]:
     """The lines about a text, without the name of the file."""
     with pytest.raises(ScenarioError) as error:
@@ -319,6 +331,23 @@ def test_the_file_that_the_others_are_made_from_is_good() -> None:
 )
 def test_a_file_that_is_no_mapping_has_one_mistake(text: str, line: str) -> None:
     """Nothing else is said about it."""
+    assert mistakes(text) == [line]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            f"a: {'[' * 101}{']' * 101}",
+            "1:104  got broken YAML (nested more than 100 deep); expected one YAML document.",
+        ),
+        ("[" * 3000 + "]" * 3000, "1:1  got broken YAML (nested more than 100 deep); expected one YAML document."),
+        (BOMB, "1:37  got broken YAML (more than 100,000 values, aliases counted); expected one YAML document."),
+    ],
+    ids=["deep", "deeper", "bomb"],
+)
+def test_a_file_that_nobody_could_read_to_its_end_has_one_mistake(text: str, line: str) -> None:
+    """One nested without end, and aliases of aliases that stand for a thousand million values."""
     assert mistakes(text) == [line]
 
 

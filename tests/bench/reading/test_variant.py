@@ -2,11 +2,14 @@
 
 import subprocess
 import sys
+from math import inf
 from pathlib import Path
 
 import pytest
 
+from bench.reading.page import Published
 from bench.reading.scenario import Scenario, ScenarioError, read_scenario
+from bench.reporting.sections import HEADLINE
 from planners.astar import AStar
 from planners.memoryless import Memoryless
 from worlds.blobs import Blobs
@@ -96,12 +99,13 @@ def test_labels_tell_the_same_agent_apart() -> None:
 
 
 def test_published_numbers_may_be_of_agents_that_are_not_run() -> None:
-    """They are handed on as numbers."""
-    scenario = read(SHORT + "published: {source: A paper, success: {MACN: {all: 96.3}}, steps: {VIN: {all: 1e1}}}\n")
+    """They are handed on as numbers, infinite ones too, and only those that are given."""
+    numbers = "success: {MACN: {all: 96.3}}, path_ratio: {VIN: {all: .inf}}"
+    scenario = read(SHORT + f"published: {{source: A paper, {numbers}}}\n")
     assert scenario.published == {
         "source": "A paper",
         "success": {"MACN": {"all": 96.3}},
-        "steps": {"VIN": {"all": 10.0}},
+        "path_ratio": {"VIN": {"all": inf}},
     }
 
 
@@ -170,16 +174,23 @@ def test_a_variable_may_stand_for_a_number(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_variable_that_is_not_set_skips_the_scenario(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The reason names it; other mistakes are told all the same."""
+    """The reason names it, also where it is set to nothing; other mistakes are told all the same."""
     monkeypatch.delenv("FOG_MAPS", raising=False)
     text = SHORT.replace(BLOBS, 'movingai: {map: "${FOG_MAPS}/city.map"}') + "about: Streets.\n"
     scenario = read(text)
     assert (scenario.name, scenario.about, scenario.variants) == ("short", "Streets.", ())
     assert scenario.skipped == "environment variable FOG_MAPS is not set"
     assert read(text + "seed: ${FOG_MAPS}\n").skipped == scenario.skipped
+    monkeypatch.setenv("FOG_MAPS", "")
+    assert read(text).skipped == scenario.skipped
     with pytest.raises(ScenarioError) as error:
         read(text + "seed: soon\n")
     assert error.value.lines == ["good.yaml:7:7  seed: got soon; expected a whole number."]
+
+
+def test_every_published_metric_is_one_that_a_report_shows() -> None:
+    """None is read in vain."""
+    assert set(Published.model_fields) - {"source"} <= set(HEADLINE)
 
 
 def test_reading_imports_only_what_a_scenario_names() -> None:

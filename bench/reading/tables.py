@@ -1,0 +1,61 @@
+"""The names of plug-ins, and where their classes are: told without importing any of them, or anything heavy."""
+
+import ast
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from planners import PLANNERS
+from worlds import FAMILIES, KINDS
+
+
+class Table(NamedTuple):
+    """One sort of plug-in."""
+
+    shipped: Mapping[str, str]
+    """Name to `module:class`."""
+    groups: tuple[str, ...]
+    """Entry points of other packages."""
+    members: tuple[str, ...]
+    """What a class must have."""
+
+    def targets(self) -> dict[str, str]:
+        """All names with their `module:class`; the project's own come first and cannot be replaced."""
+        others = {name: target for group in self.groups for name, target in registered(group).items()}
+        return {**self.shipped, **{name: target for name, target in others.items() if name not in self.shipped}}
+
+
+FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks"))
+AGENT = Table(PLANNERS, ("fogbench.planners", "fogbench.learned"), ("kinds", "start", "parameter_bytes"))
+KIND = Table(KINDS, (), ())
+
+
+@cache
+def registered(group: str) -> dict[str, str]:
+    """The entry points of a group: name to `module:class`. They are looked for once, which takes a while."""
+    return {point.name: point.value for point in entry_points(group=group)}
+
+
+def families() -> dict[str, str]:
+    """Map families: name to `module:class`."""
+    return FAMILY.targets()
+
+
+def agents() -> dict[str, str]:
+    """Agents: name to `module:class`."""
+    return AGENT.targets()
+
+
+def first_sentence(target: str) -> str:
+    """The first line of the docstring of a class, without importing it; empty if it cannot be found."""
+    place, _, class_name = target.rpartition(":")
+    try:
+        spec = find_spec(place)
+        tree = ast.parse(Path(spec.origin).read_text("utf-8") if spec and spec.origin else "")
+    except (ImportError, OSError, SyntaxError, ValueError):
+        return ""
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
+    return (ast.get_docstring(classes[0]) or "").partition("\n")[0] if classes else ""
