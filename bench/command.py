@@ -132,3 +132,6 @@ def main() -> None:
     except Mistake as mistake:
         typer.echo(str(mistake), err=True)
         sys.exit(WRONG)
+    except OSError as error:
+        typer.echo(f"{error.filename}: got {error.strerror}; expected a place to read and write.", err=True)
+        sys.exit(WRONG)

@@ -1,58 +1,58 @@
 """What the commands do with scenario files: run them, check them, report on them."""
 
-import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from typing import TypeVar
 
 from rich.console import Console
+from rich.text import Text
 
 from bench.playing import store
 from bench.playing.pool import cpus
+from bench.playing.provenance import read_run
 from bench.playing.runner import Summary, run
 from bench.progress import Bars
 from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario
 from bench.reporting.report import READS, print_tables, write_report
 from worlds.mistake import Mistake
-from worlds.types import Outcome
+from worlds.types import MapError, Outcome
+
+Answer = TypeVar("Answer")
 
 
 def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, results: Path) -> bool:
     """Run scenarios one after the other, and report on each as it ends.
 
     Returns:
-        Whether an agent crashed or hung.
+        Whether an agent crashed or hung, now or in the episodes that were recorded before.
+
+    Raises:
+        Mistake: some scenarios could not be run; the others were.
     """
-    console, crashed = Console(), False
-    for scenario in read_all(paths, episodes):
-        if _introduce(scenario, console):
-            _refuse_too_many(scenario)
-            with Bars(scenario.name, console) as bars:
-                summary = run(scenario, results / scenario.name, workers or cpus(), bars.watch)
-            crashed |= bool(summary.outcomes[Outcome.CRASHED] or summary.outcomes[Outcome.HUNG])
-            console.print(_counts(summary), highlight=False)
-            _report(scenario, results / scenario.name, console)
-    return crashed
+    console = Console()
+    broken = _each(read_all(paths, episodes), console, lambda each: _run(each, workers or cpus(), results, console))
+    return any(broken)
 
 
 def report_all(paths: Sequence[Path], results: Path) -> None:
     """Report on all that is recorded of some scenarios, however many episodes their files ask for."""
     console = Console()
-    for scenario in read_all(paths, sys.maxsize):
-        if _introduce(scenario, console):
-            _report(scenario, results / scenario.name, console)
+    _each(read_all(paths, sys.maxsize), console, lambda each: _report(each, results / each.name, console))
 
 
 def check_all(paths: Sequence[Path]) -> None:
     """Say what a run would play, after drawing one world of every variant."""
     console = Console()
-    for scenario in read_all(paths, None):
-        if _introduce(scenario, console):
-            _refuse_too_many(scenario)
-            for line in chain.from_iterable(map(_outlook, scenario.variants)):
-                console.print(line, highlight=False)
+
+    def check(scenario: Scenario) -> None:
+        _refuse_too_many(scenario)
+        for line in chain.from_iterable(_outlook(scenario, variant) for variant in scenario.variants):
+            _say(line, console)
+
+    _each(read_all(paths, None), console, check)
 
 
 def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
@@ -84,20 +84,40 @@ def _text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Mistake(f"{path}: got a file that cannot be read ({error}); expected UTF-8 text.") from None
+        raise ScenarioError([f"{path}: got a file that cannot be read ({error}); expected UTF-8 text."]) from None
 
 
 def _with_episodes(scenario: Scenario, episodes: int) -> Scenario:
     return replace(scenario, variants=tuple(replace(each, episodes=episodes) for each in scenario.variants))
 
 
-def _introduce(scenario: Scenario, console: Console) -> bool:
-    """Print what comes; False if it is skipped."""
-    console.rule(scenario.name, align="left")
-    console.print(scenario.about, style="dim", highlight=False)
-    if scenario.skipped:
-        console.print(f"Skipped: {scenario.skipped}.", style="yellow", highlight=False)
-    return not scenario.skipped
+def _each(scenarios: list[Scenario], console: Console, do: Callable[[Scenario], Answer]) -> list[Answer]:
+    """Do the same with each scenario that is not skipped; a mistake in one does not stop the others."""
+    answers, mistakes = [], []
+    for scenario in scenarios:
+        console.rule(Text(scenario.name), align="left")
+        _say(scenario.about, console, style="dim")
+        if scenario.skipped:
+            _say(f"Skipped: {scenario.skipped}.", console, style="yellow")
+            continue
+        try:
+            answers.append(do(scenario))
+        except Mistake as mistake:
+            mistakes.append(str(mistake))
+    if mistakes:
+        raise Mistake("\n".join(mistakes))
+    return answers
+
+
+def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> bool:
+    folder = results / scenario.name
+    if all(entry.skipped for variant in scenario.variants for entry in variant.agents):
+        raise Mistake(f"{scenario.path}: got no agent that can play here; `fogbench check {scenario.path}` says why.")
+    _refuse_too_many(scenario)
+    with Bars(scenario.name, console) as bars:
+        summary = run(scenario, folder, workers, bars.watch)
+    _say(_counts(summary), console)
+    return _report(scenario, folder, console)
 
 
 def _refuse_too_many(scenario: Scenario) -> None:
@@ -110,10 +130,16 @@ def _refuse_too_many(scenario: Scenario) -> None:
             )
 
 
-def _outlook(variant: Variant) -> Iterator[str]:
+def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
     from bench.playing.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
 
-    world = episode_world(variant, 0)
+    try:
+        world = episode_world(variant, 0)
+    except MapError as error:
+        raise Mistake(f"{scenario.path}: {variant.name}: {error}.") from None
+    except Exception as error:
+        told = f"got {type(error).__name__}: {error}; expected a world of its map family"
+        raise Mistake(f"{scenario.path}: {variant.name}: {told}.") from error
     playing = sum(not entry.skipped for entry in variant.agents)
     yield (
         f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "
@@ -129,11 +155,20 @@ def _counts(summary: Summary) -> str:
     return f"{summary.kept} episodes were recorded before, {summary.outcomes.total()} were played now. {ended}"
 
 
-def _report(scenario: Scenario, folder: Path, console: Console) -> None:
-    path = folder / "run.json"
-    if not path.exists():
-        raise Mistake(f"{folder}: got no recorded run; expected `fogbench run {scenario.path}` to come first.")
+def _report(scenario: Scenario, folder: Path, console: Console) -> bool:
+    """Write and print a report; whether an agent has crashed or hung."""
+    run_facts = read_run(folder)
     frame = store.read(folder, scenario, READS)
-    table = write_report(frame, scenario, json.loads(path.read_text("utf-8")), folder)
+    table = write_report(frame, scenario, run_facts, folder)
     print_tables(frame, table, scenario, console)
-    console.print(f"Tables and plots are in {folder}/", highlight=False)
+    for (variant, agent), count in store.stale(folder, scenario).items():
+        _say(
+            f"{count} recorded episodes of {agent} in {variant} no longer count: its settings or sources changed.",
+            console,
+        )
+    _say(f"Tables and plots are in {folder}/", console)
+    return bool(frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name]).any())
+
+
+def _say(text: str, console: Console, style: str | None = None) -> None:
+    console.print(text, style=style, highlight=False, markup=False)

@@ -1,0 +1,134 @@
+"""The command line, as a user meets it: what it prints, writes, and ends with."""
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from bench.command import main
+
+Fogbench = Callable[..., tuple[int, str, str]]
+
+SMALL = """
+name: {name}
+about: "Small maps [of mine], [/red] done."
+maps: {{blobs: {{size: 6, obstacles: [0, 2], obstacle_size: [1, 2]}}}}
+sensor: {{radius: 2}}
+budget: {{steps: 30}}
+agents: {agents}
+episodes: 2
+"""
+
+PLANNER = """
+from typing import ClassVar
+from planners.memoryless import Memoryless
+
+
+class Listed(Memoryless):
+    layers: list[int] = [1, 2]
+
+
+class Broken(Memoryless):
+    def start(self, task, rng):
+        raise RuntimeError("no start")
+"""
+
+
+@pytest.fixture
+def fogbench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Fogbench:
+    """Gives a command its arguments in an empty folder: exit code, output, errors."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["fogbench", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        said = capsys.readouterr()
+        return int(end.value.code or 0), said.out, said.err
+
+    return run
+
+
+def write(name: str, agents: str = "[astar]") -> None:
+    """Write a scenario, and the planners that it may name."""
+    Path(f"{name}.yaml").write_text(SMALL.format(name=name, agents=agents))
+    Path("mine.py").write_text(PLANNER)
+
+
+def test_a_run_leaves_tables_and_plots_and_goes_on_where_it_was(fogbench: Fogbench) -> None:
+    """The second run plays nothing, and more episodes only the rest."""
+    write("small")
+    for arguments, counts in (
+        ([], "0 episodes were recorded before, 2 were played now"),
+        ([], "2 episodes were recorded before, 0 were played now"),
+        (["--episodes", "3"], "2 episodes were recorded before, 1 were played now"),
+    ):
+        code, out, _ = fogbench("run", "small.yaml", *arguments)
+        assert (code, counts in out, "[of mine], [/red] done" in out) == (0, True, True)
+    assert {"summary.csv", "summary.md", "run.json", "success.png"} <= {f.name for f in Path("results/small").iterdir()}
+    assert fogbench("report", "small.yaml")[0] == 0
+
+
+def test_a_crash_is_told_and_stays_in_the_exit_code(fogbench: Fogbench) -> None:
+    """A later run that plays nothing does not forget it."""
+    write("crash", '[astar, "./mine.py:Broken"]')
+    for _ in range(2):
+        code, out, _ = fogbench("run", "crash.yaml")
+        assert (code, "RuntimeError: no start (start, line 12)" in out) == (1, True)
+
+
+def test_settings_that_cannot_be_hashed_play_like_others(fogbench: Fogbench) -> None:
+    """A list among an agent's settings is no reason to stop."""
+    write("listed", '["./mine.py:Listed"]')
+    assert fogbench("run", "listed.yaml")[0] == 0
+
+
+def test_a_scenario_that_cannot_be_run_does_not_stop_the_next(fogbench: Fogbench) -> None:
+    """The others are played, and the exit code says that something was wrong."""
+    write("fine")
+    impossible = SMALL.format(name="bad", agents="[astar]") + "tasks: {distance: [90, 99]}\n"
+    Path("bad.yaml").write_text(impossible)
+    code, out, err = fogbench("run", "bad.yaml", "fine.yaml")
+    assert (code, "2 were played now" in out) == (2, True)
+    assert err == "all, episode 0: Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
+
+
+def test_every_mistake_of_every_file_is_told_at_once(fogbench: Fogbench) -> None:
+    """One line each, on the error output, and nothing is run."""
+    write("one", "[asta]")
+    Path("two.yaml").write_bytes(b"\xff")
+    code, out, err = fogbench("check", "one.yaml", "two.yaml")
+    first, second = err.splitlines()
+    assert (code, out) == (2, "")
+    assert first.startswith("one.yaml:7:10  agents[0]: got asta; expected one of astar, ")
+    assert first.endswith("Did you mean astar?")
+    assert second.startswith("two.yaml: got a file that cannot be read (")
+
+
+def test_a_replay_verifies_and_draws(fogbench: Fogbench) -> None:
+    """A strip and a film; an agent that was not recorded is a mistake."""
+    write("small")
+    fogbench("run", "small.yaml")
+    for out in ("strip.png", "film.gif"):
+        code, said, _ = fogbench("replay", "small.yaml", "--agent", "astar", "--episode", "1", "--out", out)
+        assert (code, "It ends as recorded" in said) == (0, True)
+        with Image.open(out) as picture:
+            assert min(picture.size) > 100
+    code, _, err = fogbench("replay", "small.yaml", "--agent", "asta")
+    assert (code, err) == (2, "--agent: got asta; expected one of astar.\n")
+
+
+def test_the_other_commands_answer(fogbench: Fogbench) -> None:
+    """They list what there is, say what would be played, describe files to editors, and look at the machine."""
+    write("small")
+    for arguments, word in (
+        (["list"], "dstar_lite"),
+        (["check", "small.yaml"], "2 episodes of 1 agent"),
+        (["doctor"], "CPUs"),
+    ):
+        code, out, _ = fogbench(*arguments)
+        assert (code, word in out) == (0, True)
+    assert json.loads(fogbench("schema")[1])["type"] == "object"
