@@ -1,8 +1,12 @@
 """The raw record of one agent in one world, and the one schema that it is stored with."""
 
 from dataclasses import dataclass, fields
+from typing import Annotated
 
 import pyarrow as pa
+
+Seconds = Annotated[tuple[float, ...], "single precision"]
+"""Times are kept to seven digits: more would double the size of long episodes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +39,7 @@ class Episode:
     strict_wrong: int
     """Judged decisions that differ from those of A* on the agent's own known map."""
     setup_seconds: float
-    decision_seconds: tuple[float, ...]
+    decision_seconds: Seconds
     """Seconds of each decision, in order."""
     peak_memory_bytes: int
     """The most bytes carried from one decision to the next."""
@@ -65,6 +69,7 @@ _ARROW = {
     float: pa.float64(),
     float | None: pa.float64(),
     tuple[float, ...]: pa.list_(pa.float64()),
+    Seconds: pa.list_(pa.float32()),
 }
 
 SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode)])  # type: ignore[index]

@@ -27,8 +27,14 @@ KEYS = ["variant", "agent", "agent_key", "world_key"]
 
 pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own pool keeps what is freed
 
-LISTS = {pa.list_(pa.float64()): pd.ArrowDtype(pa.list_(pa.float64()))}
+LISTS = {kind: pd.ArrowDtype(kind) for kind in SCHEMA.types if pa.types.is_list(kind)}
 """Lists stay as they are stored: an object for each would take twice the memory."""
+
+STALE = (
+    "{count} recorded episodes of {agent} in {variant} do not count any more: its settings or sources have changed; "
+    "`fogbench run` plays them again."
+)
+"""What a user is told of `stale` episodes."""
 
 ROWS = 500
 """Rows that are held back at most."""
@@ -47,18 +53,21 @@ def read(folder: Path, scenario: Scenario, columns: Sequence[str]) -> pd.DataFra
     Raises:
         StoreError: a file is broken.
     """
-    current = _current(scenario)
+    return _read(folder, _current(scenario), columns)
+
+
+def _read(folder: Path, current: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     kept = list(dict.fromkeys([*WHO, *columns]))
     rows: pd.DataFrame = pd.concat(
         [_rows(table, current, kept) for table in (SCHEMA.empty_table(), *_load_all(folder, kept))], ignore_index=True
     )
-    rows = rows.drop_duplicates(WHO).sort_values(["place", "episode"], ignore_index=True)
-    return rows[list(columns)]
+    order = rows[[*WHO, "place"]].drop_duplicates(WHO).sort_values(["place", "episode"]).index
+    return rows.loc[order, list(columns)].reset_index(drop=True)  # long rows are copied only once
 
 
 def _rows(table: pa.Table, current: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Those rows of a part that count, without the columns that said so."""
-    frame = table.to_pandas(types_mapper=LISTS.get).merge(current, on=KEYS)
+    """Those rows of a part that agree with `current` on the columns of both, without those that said so."""
+    frame = table.to_pandas(types_mapper=LISTS.get).merge(current)
     wanted: pd.DataFrame = frame.loc[frame["episode"] < frame["wanted"], [*columns, "place"]]
     return wanted
 
@@ -74,7 +83,22 @@ def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]
     Raises:
         StoreError: a file is broken.
     """
-    rows = read(folder, scenario, WHO)
+    return _episodes(read(folder, scenario, WHO))
+
+
+def stale(folder: Path, scenario: Scenario) -> dict[tuple[str, str], int]:
+    """How many episodes of each variant and agent are recorded under other keys alone; pairs without any are left out.
+
+    Raises:
+        StoreError: a file is broken.
+    """
+    current = recorded(folder, scenario)
+    ever = _episodes(_read(folder, _current(scenario).drop(columns=["agent_key", "world_key"]), WHO))
+    counts = {pair: len(episodes - current.get(pair, set())) for pair, episodes in ever.items()}
+    return {pair: count for pair, count in counts.items() if count}
+
+
+def _episodes(rows: pd.DataFrame) -> dict[tuple[str, str], set[int]]:
     return {(str(v), str(a)): set(group) for (v, a), group in rows.groupby(WHO[:2], sort=False)["episode"]}
 
 
@@ -110,7 +134,7 @@ class Recorder:
     def __init__(self, folder: Path) -> None:
         """Go on after the last part that is there."""
         self.episodes = folder / "episodes"
-        self.part = max((int(part.stem) for part in _parts(folder)), default=0) + 1
+        self.part = max((int(part.stem) for part in _parts(folder) if part.stem.isdecimal()), default=0) + 1
         self.rows: list[Episode] = []
         self.began = self.written = monotonic()
 

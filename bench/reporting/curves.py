@@ -44,7 +44,7 @@ def _success_within(spent: ArrayLike, n: int) -> Steps:
 
 def distance_bins(variant: pd.DataFrame) -> Array:
     """[n + 1] edges of n bins of goal distance (full-map optimum) that hold equally many of the variant's episodes."""
-    distance = variant.drop_duplicates("episode")["shortest"]
+    distance = variant[["episode", "shortest"]].drop_duplicates("episode")["shortest"]
     bins = int(np.clip(len(distance) // EPISODES_A_BIN, 1, BINS))
     return np.unique(np.quantile(distance, np.linspace(0, 1, bins + 1)))
 

@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import ArrayLike
 
+from bench.playing.episode import SCHEMA
 from bench.reporting.statistics import Estimate, mean, ratio_of_sums, share
 from worlds.types import Array, Outcome
 
@@ -65,7 +66,7 @@ def decided(cell: pd.DataFrame) -> Array:
 
 def decision_milliseconds(cell: pd.DataFrame) -> Array:
     """[decisions] float64, of the episodes one after the other."""
-    return 1e3 * np.asarray(pc.list_flatten(_lists(cell)))
+    return 1e3 * np.asarray(pc.list_flatten(_lists(cell)), np.float64)
 
 
 def spl(cell: pd.DataFrame) -> Array:
@@ -74,7 +75,7 @@ def spl(cell: pd.DataFrame) -> Array:
 
 
 def _lists(cell: pd.DataFrame) -> Any:
-    return pa.array(cell["decision_seconds"], type=pa.list_(pa.float64()), from_pandas=True)
+    return pa.array(cell["decision_seconds"], type=SCHEMA.field("decision_seconds").type, from_pandas=True)
 
 
 def _mean(name: str) -> Callable[[pd.DataFrame], Estimate]:

@@ -14,7 +14,7 @@ import pytest
 
 from bench.playing.episode import SCHEMA, Episode
 from bench.playing.keys import agent_key, world_key
-from bench.playing.store import ROWS, StoreError, read, recorded, recording
+from bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
 from bench.reading.scenario import Scenario
 
 
@@ -86,6 +86,30 @@ def test_only_current_rows_are_read(make: Any, tmp_path: Path) -> None:
     write(store, row(scenario, 2, steps=5))
     assert read(store, scenario, ["episode", "steps"]).to_dict("list") == {"episode": [0, 2], "steps": [2, 5]}
     assert recorded(store, scenario) == {("short", "astar"): {0, 2}}
+
+
+def test_stale_episodes_are_counted(make: Any, tmp_path: Path) -> None:
+    """Episodes count that are there under other keys alone, once each, of agents that still play and wanted numbers."""
+    scenario, store = make(episodes=3), tmp_path / "store"
+    assert stale(store, scenario) == {}
+    old = [row(scenario, episode, agent_key="old") for episode in (0, 1, 2, 3)]
+    write(store, *old, row(scenario, 1, world_key="old"), row(scenario, 0), row(scenario, 0, agent="gone"))
+    assert stale(store, scenario) == {("short", "astar"): 2}
+    write(store, row(scenario, 1), row(scenario, 2))
+    assert stale(store, scenario) == {}
+
+
+def test_a_stray_file_is_in_nobodys_way(make: Any, tmp_path: Path) -> None:
+    """Parts are numbered past it; reading it gives the one line of any file with other columns."""
+    scenario, store = make(), tmp_path / "store"
+    write(store, row(scenario, 0))
+    stray = store / "episodes" / "extra.parquet"
+    pq.write_table(pa.table({"episode": [0]}), stray)
+    write(store, row(scenario, 1))
+    assert sorted(part.stem for part in (store / "episodes").iterdir()) == ["000001", "000002", "extra"]
+    with pytest.raises(StoreError) as caught:
+        read(store, scenario, ["episode"])
+    assert str(caught.value) == f"{stray}: got the columns of another version; expected those of this one."
 
 
 def test_an_empty_store_is_read_as_no_rows(make: Any, tmp_path: Path) -> None:
