@@ -13,11 +13,50 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from pydantic import BaseModel, Field
+
 from bench.playing.store import StoreError, put
 from bench.reading.scenario import Scenario
+from worlds.mistake import Mistake
 
 PACKAGES = ("fogbench", "numpy", "numba", "scipy", "networkx", "pandas", "pyarrow", "pydantic", "pebble", "ompl")
 """Packages whose versions are written down, where they are installed."""
+
+
+class _Session(BaseModel):
+    """What a report tells of each session."""
+
+    workers: int
+    cpu: str
+    cores: int | None
+    system: str
+    commit: str | None
+    versions: dict[str, str]
+
+
+class _Run(BaseModel):
+    """What a report tells of a run."""
+
+    seeds: dict[str, int]
+    sessions: list[_Session] = Field(min_length=1)
+
+
+def read_run(folder: Path) -> dict[str, Any]:
+    """The content of `run.json` in the folder of a scenario.
+
+    Raises:
+        Mistake: nothing was run there.
+        StoreError: the file is broken.
+    """
+    path = folder / "run.json"
+    if not path.exists():
+        raise Mistake(f"{folder}: got no recorded run; expected `fogbench run` to come first.")
+    try:
+        text = path.read_text("utf-8")
+        _Run.model_validate_json(text)
+        return dict(json.loads(text))
+    except (ValueError, OSError):
+        raise StoreError(f"{path}: got a broken file; expected what an earlier run has written.") from None
 
 
 @contextmanager
@@ -28,13 +67,14 @@ def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
         StoreError: the file that is there is broken, or it cannot be written.
     """
     path = folder / "run.json"
+    earlier = read_run(folder)["sessions"] if path.exists() else []
     session = {"started": _now(), "ended": None, "workers": workers, **_circumstances()}
     run = {
         "scenario": scenario.name,
         "path": str(scenario.path),
         "text": scenario.text,
         "seeds": {variant.name: variant.seed for variant in scenario.variants},
-        "sessions": [*_sessions(path), session],
+        "sessions": [*earlier, session],
     }
     _write(path, run)
     try:
@@ -42,13 +82,6 @@ def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
     finally:
         session["ended"] = _now()
         _write(path, run)
-
-
-def _sessions(path: Path) -> list[Any]:
-    try:
-        return list(json.loads(path.read_text("utf-8"))["sessions"]) if path.exists() else []
-    except (ValueError, KeyError, TypeError, OSError):
-        raise StoreError(f"{path}: got a broken file; expected what an earlier run has written.") from None
 
 
 def _write(path: Path, run: dict[str, Any]) -> None:

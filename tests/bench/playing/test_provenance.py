@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from bench.playing.provenance import noted
+from bench.playing.provenance import noted, read_run
 from bench.playing.store import StoreError
+from worlds.mistake import Mistake
 
 
 def test_every_session_is_noted(make: Any, tmp_path: Path) -> None:
@@ -33,12 +34,29 @@ def test_every_session_is_noted(make: Any, tmp_path: Path) -> None:
     assert {"cpu", "cores", "commit", "command", "system"} <= set(first)
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"sessions": 3}'])
+def test_a_run_is_read_as_it_was_noted(make: Any, tmp_path: Path) -> None:
+    """Reading gives the whole file; where nothing was run there is one line that says what to do."""
+    with pytest.raises(Mistake) as caught:
+        read_run(tmp_path)
+    assert str(caught.value) == f"{tmp_path}: got no recorded run; expected `fogbench run` to come first."
+    with noted(tmp_path, make(), 3):
+        assert read_run(tmp_path) == json.loads((tmp_path / "run.json").read_text())
+
+
+BROKEN = ["{", "[]", '{"sessions": 3}', '{"sessions": []}', '{"seeds": {}, "sessions": []}',
+          '{"seeds": {}, "sessions": [{"workers": 1}]}']  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BROKEN)
 def test_a_broken_file_is_named_and_kept(make: Any, tmp_path: Path, text: str) -> None:
     """What is not as an earlier run has written it gives one line, and stays."""
     path = tmp_path / "run.json"
     path.write_text(text)
     with pytest.raises(StoreError) as caught, noted(tmp_path, make(), 1):
         pass
-    assert str(caught.value) == f"{path}: got a broken file; expected what an earlier run has written."
+    told = f"{path}: got a broken file; expected what an earlier run has written."
+    assert str(caught.value) == told
+    with pytest.raises(StoreError) as caught:
+        read_run(tmp_path)
+    assert str(caught.value) == told
     assert path.read_text() == text
