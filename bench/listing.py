@@ -3,6 +3,7 @@
 import yaml
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from bench.reading.tables import agents, families, first_sentence
 from bench.shipped import find, folder
@@ -20,12 +21,12 @@ def _scenarios() -> Table:
     table = Table("scenario", "about", title="Scenarios")
     for path in find(None):
         text = yaml.load(path.read_text(encoding="utf-8"), yaml.CSafeLoader)
-        table.add_row(str(path.relative_to(folder()).with_suffix("")), text["about"])
+        table.add_row(str(path.relative_to(folder()).with_suffix("")), Text(text["about"]))
     return table
 
 
 def _classes(title: str, targets: dict[str, str]) -> Table:
     table = Table("name", "about", "class", title=title)
     for name, target in targets.items():
-        table.add_row(name, first_sentence(target), target)
+        table.add_row(*map(Text, (name, first_sentence(target), target)))
     return table

@@ -17,12 +17,12 @@ class Bars:
     def __init__(self, name: str, console: Console) -> None:
         """Bars for the scenario called `name`."""
         columns = (
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
             Eta(),
-            TextColumn("{task.fields[reached]}"),
+            TextColumn("{task.fields[reached]}", markup=False),
         )
         self.bars = Progress(*columns, console=console, speed_estimate_period=600)
         self.whole = self.bars.add_task(name, total=0, reached="")

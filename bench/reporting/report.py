@@ -12,7 +12,7 @@ from bench.reporting.metrics import METRICS
 from bench.reporting.pairs import COMPARISONS, pair
 from bench.reporting.sections import comparisons, failures, headline, page, skipped
 from bench.reporting.statistics import holm
-from bench.reporting.tables import terminal
+from bench.reporting.tables import print_table
 from worlds.types import Outcome
 
 READS = (
@@ -24,9 +24,6 @@ READS = (
 
 COLUMNS = ("scenario", "variant", "agent", "metric", "value", "low", "high", "n", "unit")
 """The columns of `summary.csv`."""
-
-WIDTH = 120
-"""Columns of text that a table takes even where the terminal has fewer, or a pipe pretends to have 80."""
 
 
 def summary(frame: pd.DataFrame, scenario: Scenario) -> pd.DataFrame:
@@ -84,7 +81,7 @@ def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, c
         ("Crashed or hung", failures(broken)),
     ):
         if lines.rows:
-            console.print(terminal(title, lines, WIDTH if console.width < WIDTH else None), crop=False)
+            print_table(title, lines, console)
 
 
 def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...]]:

@@ -24,6 +24,9 @@ READING = (
     f"episodes for means and ratios. {NOTHING} stands where nothing was measured or published."
 )
 
+LONGEST = 200
+"""Characters of a detail or a reason at most."""
+
 Found = Mapping[tuple[str, str, str], Estimate]
 """The estimates of a summary by variant, agent and name of the metric."""
 
@@ -59,14 +62,16 @@ def failures(frame: pd.DataFrame) -> Lines:
     """How often each agent failed in which way, with the first thing that was said about it."""
     failed = frame[frame["outcome"] != Outcome.REACHED.name]
     groups = failed.groupby(["variant", "agent", "outcome"], sort=False)["detail"]
-    rows = [[*map(str, place), str(len(details)), next(filter(None, details), NOTHING)] for place, details in groups]
+    rows = [
+        [*map(str, place), str(len(details)), _brief(next(filter(None, details), NOTHING))] for place, details in groups
+    ]
     return Lines(["variant", "agent", "outcome", "episodes", "first detail"], rows)
 
 
 def skipped(scenario: Scenario) -> Lines:
     """Who did not run, and why."""
     rows = [
-        [variant.name, entry.label, scenario.skipped or entry.skipped]
+        [variant.name, entry.label, _brief(scenario.skipped or entry.skipped)]
         for variant in scenario.variants
         for entry in variant.agents
         if scenario.skipped or entry.skipped
@@ -106,6 +111,12 @@ def page(
     parts += ["## How it was measured\n", "".join(f"- {fact}\n" for fact in _facts(run))]
     parts += ["## What the columns say\n", markdown(columns())]
     return "\n".join(parts)
+
+
+def _brief(text: str) -> str:
+    """The text in one line of at most `LONGEST` characters."""
+    line = " ".join(text.split())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…"
 
 
 def _places(scenario: Scenario) -> Iterator[tuple[str, str]]:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
+from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -19,6 +20,10 @@ SCALES = {
     "bytes": (("B", 1.0), ("KiB", 2.0**10), ("MiB", 2.0**20), ("GiB", 2.0**30)),
 }
 """The units that a time [ms] and a size [bytes] are written in, smallest first."""
+
+
+WIDTH = 120
+"""Columns of text that a table may take even where the terminal has fewer, or a pipe pretends to have 80."""
 
 
 class Lines(NamedTuple):
@@ -66,15 +71,24 @@ def markdown(lines: Lines) -> str:
     return "".join(f"| {' | '.join(row)} |\n" for row in padded)
 
 
-def terminal(title: str, lines: Lines, width: int | None = None) -> RichTable:
-    """The table for a terminal, as wide as it needs to be, or of `width`.
+def print_table(title: str, lines: Lines, console: Console) -> None:
+    """Print a table, as wide as it needs to be; blanks at the ends of its lines would wrap in a narrow terminal."""
+    options = console.options.update(width=max(console.width, WIDTH))
+    for line in console.render_lines(terminal(title, lines), options, pad=False):
+        text = Text.assemble(*((segment.text, segment.style or "") for segment in line))
+        text.rstrip()
+        console.print(text, soft_wrap=True)
+
+
+def terminal(title: str, lines: Lines) -> RichTable:
+    """The table for a terminal.
 
     A gap stands where the first column changes. If space is short, the second and the last column give way.
     """
     look: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "box": SIMPLE_HEAD, "show_edge": False}
-    table = RichTable(title=f"\n{title}", padding=0, width=width, **look)
+    table = RichTable(title=f"\n{title}", padding=0, **look)
     for k, text in enumerate(lines.headings):
-        table.add_column(text.replace(" ", "\n"), no_wrap=k not in {1, len(lines.headings) - 1}, overflow="fold")
+        table.add_column(Text(text.replace(" ", "\n")), no_wrap=k not in {1, len(lines.headings) - 1}, overflow="fold")
     for row, after in zip(lines.rows, [*lines.rows[1:], None], strict=True):
         table.add_row(*map(Text, row), end_section=after is not None and after[0] != row[0])
     return table

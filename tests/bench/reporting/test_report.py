@@ -14,7 +14,7 @@ from rich.console import Console
 from bench.playing.episode import SCHEMA
 from bench.reading.scenario import Scenario
 from bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
-from bench.reporting.sections import ASKED, columns
+from bench.reporting.sections import ASKED, columns, failures
 
 Recorded = Callable[..., pd.DataFrame]
 Make = Callable[..., Scenario]
@@ -146,6 +146,12 @@ def test_the_terminal_shows_results_comparisons_and_who_did_not_play(
     assert max(map(len, console.file.getvalue().splitlines())) <= 120
 
 
+def test_long_details_are_cut_to_a_line(recorded: Recorded) -> None:
+    """A traceback of a thousand letters becomes one line of 200."""
+    frame = recorded({"outcome": "CRASHED", "detail": "a\n  b " + "c" * 1000})
+    assert failures(frame).rows[0][-1] == "a b " + "c" * 195 + "…"
+
+
 LARGE = """
 import re
 from pathlib import Path
@@ -154,6 +160,7 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
+from bench.playing.episode import SCHEMA
 from bench.reporting.report import READS, write_report
 from bench.reading.scenario import Entry, Scenario, Variant
 
@@ -164,12 +171,13 @@ entries = tuple(Entry(agent, "", None, "") for agent in agents)
 scenario = Scenario(Path(), "", "large", "", (Variant("all", None, None, entries, agents[0], n, 0),), {}, "")
 shortest = np.tile(rng.integers(1, 60, n), cells).astype(float)
 numbers = {name: rng.integers(1, 60, n * cells) for name in ("steps", "peak_memory_bytes", "search_nodes", "judged")}
-seconds = pa.ListArray.from_arrays(np.arange(0, 60 * n * cells + 1, 60), rng.random(60 * n * cells))
+ends, kind = np.arange(0, 150 * n * cells + 1, 150), SCHEMA.field("decision_seconds").type
+seconds = pa.ListArray.from_arrays(ends, rng.random(150 * n * cells, np.float32))
 frame = pd.DataFrame({
     "variant": "all", "kind": "grid", "agent": np.repeat(agents, n), "episode": np.tile(np.arange(n), cells),
     "outcome": rng.choice(["REACHED", "COLLIDED"], n * cells), "budget_steps": 60, "length": shortest + 2,
     "shortest": shortest, "reference_length": shortest, "wrong_decisions": 0, "strict_wrong": 0, "setup_seconds": 0.1,
-    "decision_seconds": seconds.to_pandas(), "detail": "", "world_key": "w", **numbers,
+    "decision_seconds": pd.Series(seconds, dtype=pd.ArrowDtype(kind)), "detail": "", "world_key": "w", **numbers,
 })[list(READS)]
 del seconds
 write_report(frame, scenario, {"seeds": {}, "sessions": []}, Path(__import__("sys").argv[1]))
@@ -178,7 +186,7 @@ print(int(re.search("VmHWM:\\s+([0-9]+)", Path("/proc/self/status").read_text())
 
 
 def test_a_hundred_thousand_episodes_fit_in_500_mib(tmp_path: Path) -> None:
-    """With 60 decisions each; peak resident memory of a process that does nothing else."""
+    """With 150 decisions each, held as the store gives them: peak resident memory of a process of its own."""
     done = subprocess.run([sys.executable, "-c", LARGE, str(tmp_path)], capture_output=True, text=True, check=True)
     assert int(done.stdout) < 500
     assert (tmp_path / "success.png").exists()

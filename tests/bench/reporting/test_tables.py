@@ -5,10 +5,11 @@ from io import StringIO
 import numpy as np
 import pytest
 from rich.console import Console
+from rich.text import Text
 
 from bench.reporting.metrics import ALL, METRICS, Metric
 from bench.reporting.statistics import Estimate
-from bench.reporting.tables import Lines, heading, markdown, scaled, terminal, written
+from bench.reporting.tables import Lines, heading, markdown, print_table, scaled, terminal, written
 
 NAMED = {metric.name: metric for metric in METRICS}
 
@@ -62,6 +63,16 @@ def test_brackets_in_a_terminal_are_text() -> None:
     console = Console(width=40, file=StringIO())
     console.print(terminal("T", Lines(["a", "b"], [["[bold]x", "1.5 [1.0, 2.0]"]])))
     assert "[bold]x 1.5 [1.0, 2.0]" in console.file.getvalue()
+
+
+def test_a_narrow_terminal_gets_no_blank_lines() -> None:
+    """A table wider than the terminal is printed whole, and no line ends with blanks that would wrap; colours stay."""
+    console = Console(width=20, file=StringIO(), force_terminal=True, color_system="standard")
+    print_table("T", Lines(["a", "[/red] b", "c"], [["x", "y", "z" * 60], ["x", "2", "3"]]), console)
+    title, *lines = Text.from_ansi(console.file.getvalue().strip("\n")).plain.splitlines()
+    assert title == "T"
+    assert lines[-2:] == ["x y      " + "z" * 60, "x 2      3"]
+    assert [line for line in (title, *lines) if line != line.rstrip()] == []
 
 
 def test_a_metric_may_be_made_anywhere() -> None:
