@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from bench.playing.replay import Moment
-from worlds.types import BLOCKED, FREE, Array
+from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell
 
 COLOURS = np.array([[150, 150, 150], [255, 255, 255], [30, 30, 30]], np.uint8)  # [3, RGB]: unknown, free, blocked
 VIEW, PATH, AGENT, GOAL = (86, 180, 233), (0, 114, 178), (213, 94, 0), (0, 158, 115)
@@ -17,13 +17,13 @@ SIDE = 360
 
 
 def truth(moment: Moment) -> Array:
-    """[H, W, 3] uint8: the map as it is, the cells in view tinted."""
+    """[H, W, 3] uint8: the map as it is, the cells that the sensor shows tinted."""
     cells = np.where(moment.world.blocked, BLOCKED, FREE)  # [H, W]
     picture = COLOURS[cells]  # [H, W, 3]
-    row, column = moment.observation.place
-    radius = len(moment.observation.view) // 2
-    window = np.s_[max(0, row - radius) : row + radius + 1, max(0, column - radius) : column + radius + 1]
-    picture[window] = (0.6 * picture[window] + 0.4 * np.array(VIEW)).astype(np.uint8)
+    view = moment.observation.view
+    seen = np.argwhere(view != UNKNOWN) + moment.observation.place - len(view) // 2  # [n, 2]
+    rows, columns = seen[((seen >= 0) & (seen < cells.shape)).all(axis=1)].T  # [m], [m]
+    picture[rows, columns] = (0.6 * picture[rows, columns] + 0.4 * np.array(VIEW)).astype(np.uint8)
     return _mark(picture, moment)
 
 
@@ -40,7 +40,8 @@ def strip(moments: Sequence[tuple[Array, Array, int]], title: str, out: Path) ->
         title: one line.
         out: the file.
     """
-    figure = Figure(figsize=(2.4 * len(moments), 5.4), layout="constrained", dpi=110)
+    height, width = moments[0][0].shape[:2]
+    figure = Figure(figsize=(2.4 * len(moments), 0.6 + 4.8 * height / width), layout="constrained", dpi=110)
     figure.suptitle(title, fontsize=10)
     axes = figure.subplots(2, len(moments), squeeze=False)
     for column, (above, below, step) in enumerate(moments):
@@ -60,9 +61,16 @@ def film(pictures: Iterable[tuple[Array, Array, int]], out: Path) -> None:
 def _mark(picture: Array, moment: Moment) -> Array:
     rows, columns = np.array(moment.path).T  # [n], [n]
     picture[rows, columns] = PATH
-    picture[moment.world.task.goal] = GOAL
-    picture[moment.observation.place] = AGENT
+    picture[_around(moment.world.task.goal, picture)] = GOAL
+    picture[_around(moment.observation.place, picture)] = AGENT
     return picture
+
+
+def _around(cell: Cell, picture: Array) -> tuple[slice, slice]:
+    """A cell, on large maps with the cells around it, so that it is seen."""
+    row, column = cell
+    reach = len(picture) // 60
+    return np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
 
 
 def _frame(left: Array, right: Array) -> Image.Image:

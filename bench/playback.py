@@ -1,5 +1,6 @@
 """From a recorded row to a verified picture."""
 
+import os
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,9 @@ READS = ("variant", "agent", "episode", "outcome", "steps", "length", "shortest"
 PANELS, FRAMES = 5, 300
 """Moments in a strip, and the most in a film."""
 
+Picture = tuple[Array, Array, int]
+"""The truth, the known map, the step."""
+
 
 def replay_recorded(
     scenario: Scenario, variant_name: str | None, agent: str, episode: int, folder: Path, out: Path
@@ -29,22 +33,31 @@ def replay_recorded(
         What was seen, in two lines.
 
     Raises:
-        Mistake: there is no such episode, it does not replay as recorded, or `out` is of another type.
+        Mistake: there is no such episode, it does not replay as recorded, or `out` cannot be drawn.
     """
-    if out.suffix not in (".png", ".gif"):
-        raise Mistake(f"--out: got {out}; expected a name that ends in .png or .gif.")
+    kind = _kind(out)
     variant = _variant(scenario, variant_name)
     row = _row(scenario, variant, agent, episode, folder)
-    count_of = PANELS if out.suffix == ".png" else FRAMES
-    steps = {round(step) for step in np.linspace(0, row["steps"], min(count_of, row["steps"] + 1)).tolist()}
+    most = PANELS if kind == ".png" else FRAMES
+    steps = {round(step) for step in np.linspace(0, row["steps"], min(most, row["steps"] + 1)).tolist()}
     drawn, end = _pictures(retrace(variant, episode, row["actions"]), steps)
     verify(row, end)
     told = f"{agent} in {variant.name}, episode {episode}: {row['steps']} steps, optimum {row['shortest']:g}."
-    if out.suffix == ".png":
+    if kind == ".png":
         strip(drawn, told, out)
     else:
         film(drawn, out)
-    return f"{told} {Outcome[row['outcome']].value} {row['detail']}\nIt ends as recorded. Drawn in {out}"
+    checked = "It ends as recorded" if row["steps"] else "Nothing was recorded to verify"
+    return f"{told} {Outcome[row['outcome']].value} {row['detail']}\n{checked}. Drawn in {out}"
+
+
+def _kind(out: Path) -> str:
+    """`.png` or `.gif`, if such a file can be written."""
+    if out.suffix.lower() not in (".png", ".gif"):
+        raise Mistake(f"--out: got {out}; expected a name that ends in .png or .gif.")
+    if out.is_dir() or not os.access(out if out.exists() else out.parent, os.W_OK):
+        raise Mistake(f"--out: got {out}; expected a file in a folder that can be written.")
+    return out.suffix.lower()
 
 
 def _variant(scenario: Scenario, name: str | None) -> Variant:
@@ -65,14 +78,12 @@ def _row(scenario: Scenario, variant: Variant, agent: str, episode: int, folder:
     labels = [entry.label for entry in variant.agents if not entry.skipped]
     if agent not in labels:
         raise Mistake(f"--agent: got {agent}; expected one of {', '.join(labels)}.")
+    count = store.stale(folder, scenario).get((variant.name, agent))
     raise Mistake(
         f"--episode: got {episode}; expected one of the {(rows['agent'] == agent).sum()} that are recorded of {agent} "
         f"in {variant.name}."
+        + (f" {store.STALE.format(count=count, agent=agent, variant=variant.name)}" if count else "")
     )
-
-
-Picture = tuple[Array, Array, int]
-"""The truth, the known map, the step."""
 
 
 def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[Picture], End]:

@@ -149,7 +149,36 @@ def test_pictures_show_every_cell(moments: list[Moment]) -> None:
     ]
 
 
-def test_a_strip_is_a_picture(moments: list[Moment], tmp_path: Path) -> None:
+def test_only_what_the_sensor_shows_is_tinted(scenario: Callable[..., Scenario], picture: Callable[[str], Any]) -> None:
+    """With occlusion the cells behind a wall stay as they are, though they are within the radius."""
+    made = scenario(picture("S#. ... ..G"), AStar(), radius=2, occlusion=True)
+    (moment,), _ = replayed(made, 0, ())
+    hidden = moment.observation.view[2:, 2:] == UNKNOWN  # [3, 3]
+    plain = COLOURS[np.where(moment.world.blocked, BLOCKED, FREE)]  # [3, 3, RGB]
+    untouched = (truth(moment) == plain).all(-1)  # [3, 3]
+    untouched[2, 2] = hidden[2, 2]  # the goal is drawn over it
+    assert hidden.any()
+    assert (untouched == hidden).all()
+
+
+def test_marks_on_large_maps_are_large(scenario: Callable[..., Scenario], picture: Callable[[str], Any]) -> None:
+    """Of 120 rows, agent and goal reach two cells around theirs, as far as the map does."""
+    rows = [f"S{'.' * 59}", *["." * 60] * 118, f"{'.' * 59}G"]
+    (moment,), _ = replayed(scenario(picture(" ".join(rows)), AStar()), 0, ())
+    drawn = known(moment)
+    assert np.argwhere((drawn == AGENT).all(-1)).tolist() == [[r, c] for r in range(3) for c in range(3)]
+    assert np.argwhere((drawn == GOAL).all(-1)).tolist() == [[r, c] for r in (117, 118, 119) for c in (57, 58, 59)]
+
+
+def test_a_strip_is_as_high_as_its_maps(tmp_path: Path) -> None:
+    """A map half as high as wide takes half the height."""
+    flat = np.zeros((5, 10, 3), np.uint8)
+    strip([(flat, flat, 0)], "a title", tmp_path / "strip.png")
+    with Image.open(tmp_path / "strip.png") as image:
+        assert image.size == (264, 330)
+
+
+def test_a_strip_is_a_a_picture(moments: list[Moment], tmp_path: Path) -> None:
     """A PNG that is as wide as it has moments."""
     for count in (1, 4):
         strip([(truth(m), known(m), n) for n, m in enumerate(moments[:count])], "a title", tmp_path / "strip.png")

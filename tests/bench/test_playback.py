@@ -1,0 +1,60 @@
+"""From a recorded row to a picture: what is told, and what is refused."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from bench.playback import replay_recorded
+from bench.playing.loop import lost, play
+from bench.playing.store import recording
+from bench.reading.scenario import Scenario
+from worlds.mistake import Mistake
+from worlds.types import Outcome
+
+Make = Callable[..., Scenario]
+
+
+@pytest.fixture
+def played(make: Make, tmp_path: Path) -> Scenario:
+    """Recorded in `tmp_path/store`: of A* an episode, one that hung, and one of other sources."""
+    scenario = make()
+    variant = scenario.variants[0]
+    astar = variant.agents[0]
+    with recording(tmp_path / "store") as recorder:
+        recorder.append(play(scenario, variant, astar, 0, 1))
+        recorder.append(lost(scenario, variant, astar, 1, 1, Outcome.HUNG, "no [answer]"))
+        recorder.append(replace(play(scenario, variant, astar, 2, 1), agent_key="old"))
+    return scenario
+
+
+def test_a_replay_says_what_was_verified(played: Scenario, tmp_path: Path) -> None:
+    """An episode ends as recorded; of one that hung nothing is known; the case of the ending does not matter."""
+    for episode, checked in enumerate(("It ends as recorded", "Nothing was recorded to verify")):
+        for name in ("a.PNG", "b.gif"):
+            out = tmp_path / f"{episode}{name}"
+            told = replay_recorded(played, None, "astar", episode, tmp_path / "store", out)
+            assert told.splitlines()[1] == f"{checked}. Drawn in {out}"
+            assert out.stat().st_size > 0
+
+
+@pytest.mark.parametrize("name", ["nodir/x.png", "folder.png", "x.jpg"])
+def test_a_place_that_cannot_be_drawn_into_is_refused_first(name: str, played: Scenario, tmp_path: Path) -> None:
+    """Even an agent that is not there comes after it; the line says what would do."""
+    (tmp_path / "folder.png").mkdir()
+    out = tmp_path / name
+    with pytest.raises(Mistake) as caught:
+        replay_recorded(played, None, "nobody", 0, tmp_path / "store", out)
+    wanted = "name that ends in .png or .gif" if name == "x.jpg" else "file in a folder that can be written"
+    assert str(caught.value) == f"--out: got {out}; expected a {wanted}."
+
+
+def test_an_episode_of_other_sources_is_told(played: Scenario, tmp_path: Path) -> None:
+    """It is not there any more, and the line says why."""
+    with pytest.raises(Mistake) as caught:
+        replay_recorded(played, None, "astar", 2, tmp_path / "store", tmp_path / "x.png")
+    assert str(caught.value) == (
+        "--episode: got 2; expected one of the 2 that are recorded of astar in short. 1 recorded episodes of astar in "
+        "short do not count any more: its settings or sources have changed; `fogbench run` plays them again."
+    )
