@@ -162,10 +162,7 @@ def _report(scenario: Scenario, folder: Path, console: Console) -> bool:
     table = write_report(frame, scenario, run_facts, folder)
     print_tables(frame, table, scenario, console)
     for (variant, agent), count in store.stale(folder, scenario).items():
-        _say(
-            f"{count} recorded episodes of {agent} in {variant} no longer count: its settings or sources changed.",
-            console,
-        )
+        _say(store.STALE.format(count=count, agent=agent, variant=variant), console)
     _say(f"Tables and plots are in {folder}/", console)
     return bool(frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name]).any())
 
