@@ -29,7 +29,21 @@ if "NUMBA_CACHE_DIR" not in os.environ:
 
 def kernel(function: F) -> F:
     """Compile `function` on its first call; without any writable place for the cache, anew in each process."""
+    return _compile(function)
+
+
+def fused(function: F) -> F:
+    """A `kernel` in which a product and a sum may be rounded as one; NaN, infinity and ties stay what they are."""
+    return _compile(function, fastmath={"contract"})
+
+
+def summing(function: F) -> F:
+    """A `fused` kernel that may also add its numbers in any order, for long sums."""
+    return _compile(function, fastmath={"contract", "reassoc"})
+
+
+def _compile(function: F, **options: Any) -> F:
     try:
-        return cast(F, njit(cache=True, nogil=True)(function))
+        return cast(F, njit(cache=True, nogil=True, **options)(function))
     except RuntimeError:  # Numba: "no locator available", nothing is writable
-        return cast(F, njit(nogil=True)(function))
+        return cast(F, njit(nogil=True, **options)(function))

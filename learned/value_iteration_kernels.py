@@ -1,0 +1,304 @@
+"""The loops of value iteration over blocks of samples, forward and backward.
+
+Words used here
+    L, C     samples of a block, laid side by side: its lanes;  channels of the reward map
+    plane    [P] one channel of a block, flat: zeros, then H rows of W cells and one zero cell, then zeros. A cell is L
+             numbers, one of each sample. The zero cell that ends a row also stands before the next, so the nine
+             neighbours of all cells are nine shifted views of the plane
+    row      (W + 1) * L, the numbers of a row;  P = H * row + 2 * (row + L)
+    taps     the nine weights of a 3x3 kernel, row by row
+
+A neighbour is only a shift, so one loop serves any L: with 16 each load of float32 is one cache line, and with 1 it
+runs along the rows of a single map.
+"""
+
+import numpy as np
+
+from worlds.kernel import fused, kernel, summing
+from worlds.types import Array
+
+
+@kernel
+def forward(
+    reward: Array,
+    barrier: Array,
+    weights: Array,
+    lanes: int,
+    iterations: int,
+    values: Array,
+    choices: Array,
+    q: Array,
+    v: Array,
+) -> None:
+    """Value iteration, block after block.
+
+    Args:
+        reward: [B, C, H, W].
+        barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
+        weights: [4, C + 1, 9], the value's taps last.
+        lanes: samples of a block; the last block may have fewer.
+        iterations: at least 1.
+        values: [blocks, iterations + 1, P] for the value before and after each iteration, or 2 that take turns.
+        choices: [blocks, iterations, P] uint8 for the action that gave each value, or 1.
+        q: [B, 4, H, W] for the last Q.
+        v: [B, H, W] for its maximum over the actions.
+    """
+    for block in range(len(values)):
+        s = slice(block * lanes, (block + 1) * lanes)
+        _forward(reward[s], barrier[s], weights, iterations, values[block], choices[block], q[s], v[s])
+
+
+@kernel
+def _forward(
+    reward: Array,
+    barrier: Array,
+    weights: Array,
+    iterations: int,
+    values: Array,
+    choices: Array,
+    q: Array,
+    v: Array,
+) -> None:
+    lanes, channels, height, width = reward.shape
+    row = (width + 1) * lanes
+    size = (height + 2) * row + 2 * lanes
+    terms = np.zeros((4, size), reward.dtype)  # of Q: what is the same in all iterations
+    if barrier.size:
+        for action in range(4):
+            pack(barrier[:, action], terms[action])
+    plane = np.zeros(size, reward.dtype)
+    for channel in range(channels):
+        pack(reward[:, channel], plane)
+        correlate(terms, weights[:, channel], plane, row, lanes)
+    before, after, choice = plane, values[0][:size], choices[0][:size]
+    after[:] = 0
+    for k in range(iterations):
+        before, after = after, values[(k + 1) % len(values)][:size]
+        choice = choices[k % len(choices)][:size]
+        if k < iterations - 1:
+            backup(terms, weights[:, channels], before, after, choice, row, lanes)
+            clear(after, height, row, lanes)
+    correlate(terms, weights[:, channels], before, row, lanes)
+    maximise(terms, after, choice, row + lanes)
+    for action in range(4):
+        unpack(terms[action], q[:, action])
+    unpack(after, v)
+
+
+@kernel
+def backward(
+    reward: Array,
+    weights: Array,
+    lanes: int,
+    values: Array,
+    choices: Array,
+    dq: Array,
+    dv: Array,
+    dreward: Array,
+    dbarrier: Array,
+    dweights: Array,
+) -> None:
+    """Gradients of `forward`, block after block: a value passes its own to the action that gave it, and to no other.
+
+    Args:
+        reward, weights, lanes, values, choices: as in `forward`, with the value of every iteration.
+        dq, dv: gradients by the results.
+        dreward, dbarrier: shaped as `reward` and `barrier`, for the gradients by them.
+        dweights: [blocks, 4, C + 1, 9] zeros, for each block's part of the gradient by the weights.
+    """
+    for block in range(len(values)):
+        s = slice(block * lanes, (block + 1) * lanes)
+        _backward(
+            reward[s], weights, values[block], choices[block], dq[s], dv[s], dreward[s], dbarrier[s], dweights[block]
+        )
+
+
+@kernel
+def _backward(
+    reward: Array,
+    weights: Array,
+    values: Array,
+    choices: Array,
+    dq: Array,
+    dv: Array,
+    dreward: Array,
+    dbarrier: Array,
+    dweights: Array,
+) -> None:
+    lanes, channels, height, width = reward.shape
+    row = (width + 1) * lanes
+    size = (height + 2) * row + 2 * lanes
+    total = np.zeros((4, size), reward.dtype)  # gradients by `terms`
+    routed = np.zeros((4, size), reward.dtype)
+    plane = np.zeros(size, reward.dtype)
+    pack(dv, plane)
+    for action in range(4):
+        pack(dq[:, action], total[action])
+    iterations = len(choices)
+    for k in range(iterations - 1, -1, -1):
+        route(plane, choices[k], routed, total)
+        grads = total if k == iterations - 1 else routed  # only the last Q is a result
+        overlap(dweights[:, channels], grads, values[k][:size], row, lanes)
+        gather(plane, weights[:, channels], grads, row, lanes)
+        clear(plane, height, row, lanes)
+    for channel in range(channels):
+        gather(plane, weights[:, channel], total, row, lanes)
+        unpack(plane, dreward[:, channel])
+        plane[:] = 0
+        pack(reward[:, channel], plane)
+        overlap(dweights[:, channel], total, plane, row, lanes)
+    if dbarrier.size:
+        for action in range(4):
+            unpack(total[action], dbarrier[:, action])
+
+
+@kernel
+def pack(maps: Array, plane: Array) -> None:
+    """Lay maps [L, H, W] side by side into a plane."""
+    lanes, height, width = maps.shape
+    for lane in range(lanes):
+        for y in range(height):
+            for x in range(width):
+                plane[((y + 1) * (width + 1) + x + 1) * lanes + lane] = maps[lane, y, x]
+
+
+@kernel
+def unpack(plane: Array, maps: Array) -> None:
+    """Undo `pack`."""
+    lanes, height, width = maps.shape
+    for lane in range(lanes):
+        for y in range(height):
+            for x in range(width):
+                maps[lane, y, x] = plane[((y + 1) * (width + 1) + x + 1) * lanes + lane]
+
+
+@kernel
+def clear(plane: Array, height: int, row: int, lanes: int) -> None:
+    """Set to zero all that is no cell of a map."""
+    plane[: row + lanes] = 0
+    for y in range(1, height + 1):
+        plane[(y + 1) * row : (y + 1) * row + lanes] = 0
+    plane[(height + 1) * row :] = 0
+
+
+@fused
+def backup(terms: Array, weights: Array, before: Array, after: Array, choice: Array, row: int, lanes: int) -> None:
+    """One iteration: the largest over the actions of `terms` and the kernel's sum over the values before."""
+    start = row + lanes
+    t0, t1, t2, t3 = terms[0][start:], terms[1][start:], terms[2][start:], terms[3][start:]
+    w0, w1, w2, w3 = taps(weights[0]), taps(weights[1]), taps(weights[2]), taps(weights[3])
+    views, v, a = neighbours(before, row, lanes), after[start:], choice[start:]
+    for j in range(len(before) - 2 * start):
+        x = at(views, j)
+        v[j], a[j] = largest(t0[j] + dot(w0, x), t1[j] + dot(w1, x), t2[j] + dot(w2, x), t3[j] + dot(w3, x))
+
+
+@kernel
+def maximise(terms: Array, after: Array, choice: Array, start: int) -> None:
+    """The largest over the actions, and which it was."""
+    t0, t1, t2, t3 = terms[0], terms[1], terms[2], terms[3]
+    for j in range(start, len(after) - start):
+        after[j], choice[j] = largest(t0[j], t1[j], t2[j], t3[j])
+
+
+@kernel
+def largest(q0: float, q1: float, q2: float, q3: float) -> tuple[float, int]:
+    """The largest and its action, of equals the first; NaN counts as larger than any number, as it does in PyTorch."""
+    q, action = q0, 0
+    if (q1 > q) | np.isnan(q1):
+        q, action = q1, 1
+    if (q2 > q) | np.isnan(q2):
+        q, action = q2, 2
+    if (q3 > q) | np.isnan(q3):
+        q, action = q3, 3
+    return q, action
+
+
+@fused
+def correlate(terms: Array, weights: Array, plane: Array, row: int, lanes: int) -> None:
+    """Add to each action's plane its kernel's sum over the neighbours in `plane`."""
+    start = row + lanes
+    t0, t1, t2, t3 = terms[0][start:], terms[1][start:], terms[2][start:], terms[3][start:]
+    w0, w1, w2, w3 = taps(weights[0]), taps(weights[1]), taps(weights[2]), taps(weights[3])
+    views = neighbours(plane, row, lanes)
+    for j in range(len(plane) - 2 * start):
+        x = at(views, j)
+        t0[j] += dot(w0, x)
+        t1[j] += dot(w1, x)
+        t2[j] += dot(w2, x)
+        t3[j] += dot(w3, x)
+
+
+@kernel
+def route(plane: Array, choice: Array, routed: Array, total: Array) -> None:
+    """Give each gradient to the action that was chosen, the others get zero; add that to the total."""
+    zero = plane.dtype.type(0)
+    for action in range(4):
+        here, sums = routed[action], total[action]
+        for j in range(len(plane)):
+            here[j] = plane[j] if choice[j] == action else zero
+            sums[j] += here[j]
+
+
+@fused
+def gather(plane: Array, weights: Array, grads: Array, row: int, lanes: int) -> None:
+    """The transpose of `correlate`: what each cell gets back from the actions in whose sums it was."""
+    start = row + lanes
+    out = plane[start:]
+    out[:] = 0
+    for action in range(4):
+        w = taps(weights[action][::-1])
+        views = neighbours(grads[action], row, lanes)
+        for j in range(len(plane) - 2 * start):
+            out[j] += dot(w, at(views, j))
+
+
+@summing
+def overlap(sums: Array, grads: Array, plane: Array, row: int, lanes: int) -> None:
+    """Add to `sums` [4, 9] the gradient by each tap: each action's gradients times the tap's neighbour, summed."""
+    start = row + lanes
+    g0, g1, g2, g3 = grads[0][start:], grads[1][start:], grads[2][start:], grads[3][start:]
+    for tap, x in enumerate(neighbours(plane, row, lanes)):
+        s0 = s1 = s2 = s3 = plane[0] * 0
+        for j in range(len(plane) - 2 * start):
+            s0 += g0[j] * x[j]
+            s1 += g1[j] * x[j]
+            s2 += g2[j] * x[j]
+            s3 += g3[j] * x[j]
+        sums[0, tap] += s0
+        sums[1, tap] += s1
+        sums[2, tap] += s2
+        sums[3, tap] += s3
+
+
+@kernel
+def neighbours(plane: Array, row: int, lanes: int) -> tuple[Array, ...]:
+    """Nine views of a plane; number j of each is the same cell's neighbour in that direction."""
+    top, middle, bottom = plane, plane[row:], plane[2 * row :]
+    return (
+        top, top[lanes:], top[2 * lanes :],
+        middle, middle[lanes:], middle[2 * lanes :],
+        bottom, bottom[lanes:], bottom[2 * lanes :],
+    )  # fmt: skip
+
+
+@kernel
+def at(x: tuple[Array, ...], j: int) -> tuple[float, ...]:
+    """Number j of nine views."""
+    return x[0][j], x[1][j], x[2][j], x[3][j], x[4][j], x[5][j], x[6][j], x[7][j], x[8][j]
+
+
+@kernel
+def taps(w: Array) -> tuple[float, ...]:
+    """Nine weights, in registers."""
+    return w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8]
+
+
+@fused
+def dot(w: tuple[float, ...], x: tuple[float, ...]) -> float:
+    """The sum of nine products."""
+    return (
+        w[0] * x[0] + w[1] * x[1] + w[2] * x[2]
+        + w[3] * x[3] + w[4] * x[4] + w[5] * x[5]
+        + w[6] * x[6] + w[7] * x[7] + w[8] * x[8]
+    )  # fmt: skip
