@@ -38,8 +38,9 @@ class _Fast(torch.autograd.Function):
         q, v = reward.new_empty(batch, 4, height, width), reward.new_empty(batch, height, width)
 
         def task(block: slice, s: slice) -> None:
-            saved = values[block].numpy(), choices[block].numpy()
-            kernels.forward(_np(reward[s]), _np(barrier[s]), _np(taps), lanes, iterations, *saved, _np(q[s]), _np(v[s]))
+            given = reward[s], barrier[s], taps, lanes, iterations
+            scratch = reward.new_empty(5, plane)
+            kernels.forward(*map(_np, (*given, values[block], choices[block], scratch, q[s], v[s])))
 
         _in_threads(task, blocks, lanes)
         ctx.save_for_backward(reward, taps, barrier, values, choices)
@@ -55,8 +56,9 @@ class _Fast(torch.autograd.Function):
         dtaps = taps.new_zeros(len(values), *taps.shape)  # [blocks, 4, C + 1, 9]
 
         def task(block: slice, s: slice) -> None:
-            given = reward[s], taps, ctx.lanes, values[block], choices[block], dq[s], dv[s]
-            kernels.backward(*map(_np, given), *map(_np, (dreward[s], dbarrier[s], dtaps[block])))
+            given = reward[s], taps, ctx.lanes, values[block], choices[block]
+            scratch = reward.new_empty(9, values.shape[2])
+            kernels.backward(*map(_np, (*given, scratch, dq[s], dv[s], dreward[s], dbarrier[s], dtaps[block])))
 
         _in_threads(task, len(values), ctx.lanes)
         return dreward, dtaps.sum(0).view(ctx.shape), dbarrier, None, None

@@ -27,6 +27,7 @@ def forward(
     iterations: int,
     values: Array,
     choices: Array,
+    scratch: Array,
     q: Array,
     v: Array,
 ) -> None:
@@ -40,12 +41,13 @@ def forward(
         iterations: at least 1.
         values: [blocks, iterations + 1, P] for the value before and after each iteration, or 2 that take turns.
         choices: [blocks, iterations, P] uint8 for the action that gave each value, or 1.
+        scratch: [5, P].
         q: [B, 4, H, W] for the last Q.
         v: [B, H, W] for its maximum over the actions.
     """
     for block in range(len(values)):
         s = slice(block * lanes, (block + 1) * lanes)
-        _forward(reward[s], barrier[s], weights, iterations, values[block], choices[block], q[s], v[s])
+        _forward(reward[s], barrier[s], weights, iterations, values[block], choices[block], scratch, q[s], v[s])
 
 
 @kernel
@@ -56,17 +58,18 @@ def _forward(
     iterations: int,
     values: Array,
     choices: Array,
+    scratch: Array,
     q: Array,
     v: Array,
 ) -> None:
     lanes, channels, height, width = reward.shape
     row = (width + 1) * lanes
     size = (height + 2) * row + 2 * lanes
-    terms = np.zeros((4, size), reward.dtype)  # of Q: what is the same in all iterations
+    scratch[:] = 0
+    terms, plane = scratch[:4], scratch[4][:size]  # of Q: what is the same in all iterations; of the reward
     if barrier.size:
         for action in range(4):
             pack(barrier[:, action], terms[action])
-    plane = np.zeros(size, reward.dtype)
     for channel in range(channels):
         pack(reward[:, channel], plane)
         correlate(terms, weights[:, channel], plane, row, lanes)
@@ -92,6 +95,7 @@ def backward(
     lanes: int,
     values: Array,
     choices: Array,
+    scratch: Array,
     dq: Array,
     dv: Array,
     dreward: Array,
@@ -102,6 +106,7 @@ def backward(
 
     Args:
         reward, weights, lanes, values, choices: as in `forward`, with the value of every iteration.
+        scratch: [9, P].
         dq, dv: gradients by the results.
         dreward, dbarrier: shaped as `reward` and `barrier`, for the gradients by them.
         dweights: [blocks, 4, C + 1, 9] zeros, for each block's part of the gradient by the weights.
@@ -109,7 +114,16 @@ def backward(
     for block in range(len(values)):
         s = slice(block * lanes, (block + 1) * lanes)
         _backward(
-            reward[s], weights, values[block], choices[block], dq[s], dv[s], dreward[s], dbarrier[s], dweights[block]
+            reward[s],
+            weights,
+            values[block],
+            choices[block],
+            scratch,
+            dq[s],
+            dv[s],
+            dreward[s],
+            dbarrier[s],
+            dweights[block],
         )
 
 
@@ -119,6 +133,7 @@ def _backward(
     weights: Array,
     values: Array,
     choices: Array,
+    scratch: Array,
     dq: Array,
     dv: Array,
     dreward: Array,
@@ -128,9 +143,8 @@ def _backward(
     lanes, channels, height, width = reward.shape
     row = (width + 1) * lanes
     size = (height + 2) * row + 2 * lanes
-    total = np.zeros((4, size), reward.dtype)  # gradients by `terms`
-    routed = np.zeros((4, size), reward.dtype)
-    plane = np.zeros(size, reward.dtype)
+    scratch[:] = 0
+    total, routed, plane = scratch[:4], scratch[4:8], scratch[8][:size]  # gradients by terms, by one Q, by one V
     pack(dv, plane)
     for action in range(4):
         pack(dq[:, action], total[action])
@@ -253,22 +267,36 @@ def gather(plane: Array, weights: Array, grads: Array, row: int, lanes: int) -> 
             out[j] += dot(w, at(views, j))
 
 
-@summing
+@kernel
 def overlap(sums: Array, grads: Array, plane: Array, row: int, lanes: int) -> None:
-    """Add to `sums` [4, 9] the gradient by each tap: each action's gradients times the tap's neighbour, summed."""
-    start = row + lanes
-    g0, g1, g2, g3 = grads[0][start:], grads[1][start:], grads[2][start:], grads[3][start:]
-    for tap, x in enumerate(neighbours(plane, row, lanes)):
-        s0 = s1 = s2 = s3 = plane[0] * 0
-        for j in range(len(plane) - 2 * start):
-            s0 += g0[j] * x[j]
-            s1 += g1[j] * x[j]
-            s2 += g2[j] * x[j]
-            s3 += g3[j] * x[j]
-        sums[0, tap] += s0
-        sums[1, tap] += s1
-        sums[2, tap] += s2
-        sums[3, tap] += s3
+    """Add to `sums` [4, 9] the gradient by each tap: an action's gradients times the neighbours in `plane`, summed."""
+    start, end = row + lanes, len(plane) - row - lanes
+    g0, g1, g2, g3 = grads[0][start:end], grads[1][start:end], grads[2][start:end], grads[3][start:end]
+    for y in range(3):
+        x = plane[y * row :]
+        products = twelve(g0, g1, g2, g3, x, x[lanes:], x[2 * lanes :])
+        for action in range(4):
+            for i in range(3):
+                sums[action, 3 * y + i] += products[action][i]
+
+
+@summing
+def twelve(
+    g0: Array, g1: Array, g2: Array, g3: Array, x0: Array, x1: Array, x2: Array
+) -> tuple[tuple[float, ...], ...]:
+    """The scalar products of each g with each x; as many at once as share their loads and stay in registers."""
+    a0 = a1 = a2 = b0 = b1 = b2 = c0 = c1 = c2 = d0 = d1 = d2 = x0.dtype.type(0)
+    for j in range(len(g0)):
+        x, y, z = x0[j], x1[j], x2[j]
+        g = g0[j]
+        a0, a1, a2 = a0 + g * x, a1 + g * y, a2 + g * z
+        g = g1[j]
+        b0, b1, b2 = b0 + g * x, b1 + g * y, b2 + g * z
+        g = g2[j]
+        c0, c1, c2 = c0 + g * x, c1 + g * y, c2 + g * z
+        g = g3[j]
+        d0, d1, d2 = d0 + g * x, d1 + g * y, d2 + g * z
+    return (a0, a1, a2), (b0, b1, b2), (c0, c1, c2), (d0, d1, d2)
 
 
 @kernel
