@@ -20,47 +20,50 @@ from worlds.types import Array
 
 @kernel
 def forward(
+    first: int,
+    last: int,
+    lanes: int,
+    iterations: int,
     reward: Array,
     barrier: Array,
     weights: Array,
-    lanes: int,
-    iterations: int,
     values: Array,
     choices: Array,
-    scratch: Array,
     q: Array,
     v: Array,
+    scratch: Array,
 ) -> None:
-    """Value iteration, block after block.
+    """Value iteration on some blocks.
 
     Args:
+        first, last: the blocks, without the last.
+        lanes: samples of a block; the last of all blocks may have fewer.
+        iterations: at least 1.
         reward: [B, C, H, W].
         barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
         weights: [4, C + 1, 9], the value's taps last.
-        lanes: samples of a block; the last block may have fewer.
-        iterations: at least 1.
         values: [blocks, iterations + 1, P] for the value before and after each iteration, or 2 that take turns.
         choices: [blocks, iterations, P] uint8 for the action that gave each value, or 1.
-        scratch: [5, P].
         q: [B, 4, H, W] for the last Q.
         v: [B, H, W] for its maximum over the actions.
+        scratch: [5, P].
     """
-    for block in range(len(values)):
+    for block in range(first, last):
         s = slice(block * lanes, (block + 1) * lanes)
-        _forward(reward[s], barrier[s], weights, iterations, values[block], choices[block], scratch, q[s], v[s])
+        _forward(iterations, reward[s], barrier[s], weights, values[block], choices[block], q[s], v[s], scratch)
 
 
 @kernel
 def _forward(
+    iterations: int,
     reward: Array,
     barrier: Array,
     weights: Array,
-    iterations: int,
     values: Array,
     choices: Array,
-    scratch: Array,
     q: Array,
     v: Array,
+    scratch: Array,
 ) -> None:
     lanes, channels, height, width = reward.shape
     row = (width + 1) * lanes
@@ -90,40 +93,42 @@ def _forward(
 
 @kernel
 def backward(
+    first: int,
+    last: int,
+    lanes: int,
     reward: Array,
     weights: Array,
-    lanes: int,
     values: Array,
     choices: Array,
-    scratch: Array,
     dq: Array,
     dv: Array,
     dreward: Array,
     dbarrier: Array,
     dweights: Array,
+    scratch: Array,
 ) -> None:
-    """Gradients of `forward`, block after block: a value passes its own to the action that gave it, and to no other.
+    """Gradients of `forward` on some blocks: a value passes its own to the action that gave it, and to no other.
 
     Args:
-        reward, weights, lanes, values, choices: as in `forward`, with the value of every iteration.
-        scratch: [9, P].
+        first, last, lanes, reward, weights, values, choices: as in `forward`, with the values of all iterations.
         dq, dv: gradients by the results.
         dreward, dbarrier: shaped as `reward` and `barrier`, for the gradients by them.
         dweights: [blocks, 4, C + 1, 9] zeros, for each block's part of the gradient by the weights.
+        scratch: [9, P].
     """
-    for block in range(len(values)):
+    for block in range(first, last):
         s = slice(block * lanes, (block + 1) * lanes)
         _backward(
             reward[s],
             weights,
             values[block],
             choices[block],
-            scratch,
             dq[s],
             dv[s],
             dreward[s],
             dbarrier[s],
             dweights[block],
+            scratch,
         )
 
 
@@ -133,12 +138,12 @@ def _backward(
     weights: Array,
     values: Array,
     choices: Array,
-    scratch: Array,
     dq: Array,
     dv: Array,
     dreward: Array,
     dbarrier: Array,
     dweights: Array,
+    scratch: Array,
 ) -> None:
     lanes, channels, height, width = reward.shape
     row = (width + 1) * lanes
@@ -210,9 +215,10 @@ def backup(terms: Array, weights: Array, before: Array, after: Array, choice: Ar
 @kernel
 def maximise(terms: Array, after: Array, choice: Array, start: int) -> None:
     """The largest over the actions, and which it was."""
-    t0, t1, t2, t3 = terms[0], terms[1], terms[2], terms[3]
-    for j in range(start, len(after) - start):
-        after[j], choice[j] = largest(t0[j], t1[j], t2[j], t3[j])
+    t0, t1, t2, t3 = terms[0][start:], terms[1][start:], terms[2][start:], terms[3][start:]
+    v, a = after[start:], choice[start:]
+    for j in range(len(after) - 2 * start):
+        v[j], a[j] = largest(t0[j], t1[j], t2[j], t3[j])
 
 
 @kernel
