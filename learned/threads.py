@@ -6,6 +6,7 @@ measured to be slower than one thread. The door to OpenMP is `GOMP_parallel`, in
 
 import ctypes
 from collections.abc import Callable
+from itertools import pairwise
 
 import torch
 
@@ -23,7 +24,8 @@ def share(run: Callable[[int, int], None], count: int) -> None:
     """
     threads = min(count, torch.get_num_threads())
     bounds = [count * i // threads for i in range(threads + 1)]
-    waiting, done = iter(zip(bounds[:-1], bounds[1:], strict=True)), []
+    waiting = iter(pairwise(bounds))
+    done: list[int] = []
 
     def work(_: object) -> None:
         for first, last in waiting:

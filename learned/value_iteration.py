@@ -12,7 +12,7 @@ Words used here
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional as F
+from torch.nn.functional import conv2d
 
 from learned.value_iteration_fast import fast
 
@@ -36,7 +36,7 @@ class RewardMap(nn.Module):
         mix = self.mix.weight.flatten(1)  # [rewards, hidden]
         weight = torch.einsum("rh,hcij->rcij", mix, self.features.weight)
         bias = torch.mv(mix, self.features.bias) + self.mix.bias
-        return F.conv2d(image, weight, bias, padding=1)
+        return conv2d(image, weight, bias, padding=1)
 
 
 class ValueIteration(nn.Module):
@@ -86,7 +86,7 @@ def plain(reward: Tensor, kernels: Tensor, iterations: int, barrier: Tensor | No
     """
     v = torch.zeros_like(reward[:, :1])  # [B, 1, H, W]
     for _ in range(iterations):
-        q = F.conv2d(torch.cat([reward, v], dim=1), kernels, padding=1)
+        q = conv2d(torch.cat([reward, v], dim=1), kernels, padding=1)
         q = q if barrier is None else q + barrier
         v, _ = q.max(dim=1, keepdim=True)
     return q, v.squeeze(1)

@@ -1,0 +1,99 @@
+"""Value iteration beside the loop of public VIN code, and its rate beside a matrix product's, on two threads.
+
+    pytest bench/timing/test_value_iteration.py -s
+
+In each round all take their turn, so that what else the machine does falls on all; the ratios are medians over rounds.
+"""
+
+from collections.abc import Callable, Iterator
+from time import perf_counter
+
+import numpy as np
+import pytest
+import torch
+from pytest_benchmark.fixture import BenchmarkFixture
+from torch import Tensor
+from torch.nn.functional import conv2d
+
+from learned.value_iteration import plain
+from learned.value_iteration_fast import fast
+
+ROUNDS = 15
+SIDE = 2048
+SHAPES = [(128, 16, 20), (32, 32, 40), (8, 64, 80), (512, 11, 16)]
+"""Batch, rows and columns of a map, iterations."""
+
+Form = Callable[[Tensor, Tensor, int], tuple[Tensor, Tensor]]
+
+
+def public(reward: Tensor, kernels: Tensor, iterations: int) -> tuple[Tensor, Tensor]:
+    """The loop as public VIN code has it."""
+    v = torch.zeros_like(reward[:, :1])
+    for _ in range(iterations):
+        q = conv2d(torch.cat([reward, v], 1), kernels, padding=1)
+        v, _ = torch.max(q, dim=1, keepdim=True)
+    return q, v
+
+
+@pytest.fixture(autouse=True)
+def _two_threads() -> Iterator[None]:
+    before = torch.get_num_threads()
+    torch.set_num_threads(2)
+    yield
+    torch.set_num_threads(before)
+
+
+def inputs(batch: int, size: int) -> tuple[Tensor, Tensor, Tensor]:
+    """A reward map, kernels and a gradient of every Q."""
+    torch.manual_seed(0)
+    reward = torch.randn(batch, 4, size, size, requires_grad=True)
+    kernels = (0.2 * torch.randn(4, 5, 3, 3)).requires_grad_()
+    return reward, kernels, torch.randn(batch, 4, size, size)
+
+
+def forward(form: Form, shape: tuple[int, int, int]) -> Callable[[], object]:
+    """Values without gradients."""
+    batch, size, iterations = shape
+    reward, kernels, _ = inputs(batch, size)
+    return torch.no_grad()(lambda: form(reward, kernels, iterations))
+
+
+def both(form: Form, shape: tuple[int, int, int]) -> Callable[[], object]:
+    """Values, and all gradients from a dense one."""
+    batch, size, iterations = shape
+    reward, kernels, down = inputs(batch, size)
+    return lambda: torch.autograd.grad(form(reward, kernels, iterations)[0], [reward, kernels], down)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+@pytest.mark.parametrize("way", [forward, both])
+@pytest.mark.parametrize("form", [public, plain, fast])
+def test_form(
+    benchmark: BenchmarkFixture, form: Form, way: Callable[..., Callable[[], object]], shape: tuple[int, int, int]
+) -> None:
+    """Each form by itself."""
+    benchmark.group = f"VI {way.__name__} {shape}"
+    benchmark(way(form, shape))
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+def test_ratios(shape: tuple[int, int, int]) -> None:
+    """How many times as fast as the public loop, and the share of the matrix product's rate, taking turns."""
+    batch, size, iterations = shape
+    left = torch.randn(SIDE, SIDE)
+    turns = [forward(public, shape), forward(fast, shape), both(public, shape), both(fast, shape), lambda: left @ left]
+    times = np.array([[seconds(turn) for turn in turns] for _ in range(ROUNDS + 1)])[1:]  # [rounds, turns]
+    rate = 2 * 9 * 4 * batch * size**2 * iterations / times[:, 1]
+    product = 2 * SIDE**3 / times[:, 4]
+    ahead, both_ways = np.median(times[:, 0] / times[:, 1]), np.median(times[:, 2] / times[:, 3])
+    print(
+        f"\n{shape}: forward {ahead:.1f} times the public loop, with backward {both_ways:.1f}; "
+        f"{np.median(rate) / 1e9:.0f} GFLOP/s, {np.median(rate / product):.0%} of a {SIDE}x{SIDE} product"
+    )
+
+
+def seconds(turn: Callable[[], object]) -> float:
+    """Seconds that one turn takes."""
+    began = perf_counter()
+    turn()
+    return perf_counter() - began
