@@ -10,6 +10,8 @@ Words used here
 `plain` reads like these equations; `learned.value_iteration_fast` computes the same many times faster on a CPU.
 """
 
+from typing import cast
+
 import torch
 from torch import Tensor, nn
 from torch.nn.functional import conv2d
@@ -35,7 +37,7 @@ class RewardMap(nn.Module):
         """
         mix = self.mix.weight.flatten(1)  # [rewards, hidden]
         weight = torch.einsum("rh,hcij->rcij", mix, self.features.weight)
-        bias = torch.mv(mix, self.features.bias) + self.mix.bias
+        bias = mix @ cast(Tensor, self.features.bias) + cast(Tensor, self.mix.bias)
         return conv2d(image, weight, bias, padding=1)
 
 
@@ -66,7 +68,7 @@ class ValueIteration(nn.Module):
         """The kernels [A, A + 1, 3, 3], the last of each made a distribution if there is a discount."""
         if self.discount is None:
             return self.kernels
-        reward, value = self.kernels.split([ACTIONS, 1], dim=1)
+        reward, value = self.kernels[:, :-1], self.kernels[:, -1:]
         moves = self.discount * value.flatten(1).softmax(1).view_as(value)
         return torch.cat([reward, moves], dim=1)
 

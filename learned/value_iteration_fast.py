@@ -38,11 +38,10 @@ class _Fast(torch.autograd.Function):
         values = reward.new_empty(blocks, iterations + 1 if keep else 2, plane)
         choices = reward.new_empty(blocks, iterations if keep else 1, plane, dtype=torch.uint8)
         q, v = reward.new_empty(batch, 4, height, width), reward.new_empty(batch, height, width)
-
         arrays = _arrays(reward, barrier, taps, values, choices, q, v)
 
         def run(first: int, last: int) -> None:
-            kernels.forward(first, last, lanes, iterations, *arrays, reward.new_empty(5, plane).numpy())
+            kernels.forward(first, last, lanes, iterations, reward.new_empty(5, plane).numpy(), *arrays)
 
         share(run, blocks)
         ctx.save_for_backward(reward, taps, barrier, values, choices)
@@ -50,17 +49,16 @@ class _Fast(torch.autograd.Function):
         return q, v
 
     @staticmethod
-    @once_differentiable  # type: ignore[untyped-decorator]  # as PyTorch has it
+    @once_differentiable
     def backward(ctx: Any, dq: Tensor, dv: Tensor) -> tuple[Tensor, Tensor, Tensor, None, None]:
         reward, taps, barrier, values, choices = ctx.saved_tensors
         dq, dv = dq.contiguous(), dv.contiguous()
         dreward, dbarrier = torch.empty_like(reward), torch.empty_like(barrier)
         dtaps = taps.new_zeros(len(values), *taps.shape)  # [blocks, 4, C + 1, 9]
-
         arrays = _arrays(reward, taps, values, choices, dq, dv, dreward, dbarrier, dtaps)
 
         def run(first: int, last: int) -> None:
-            kernels.backward(first, last, ctx.lanes, *arrays, reward.new_empty(9, values.shape[2]).numpy())
+            kernels.backward(first, last, ctx.lanes, reward.new_empty(9, values.shape[2]).numpy(), *arrays)
 
         share(run, len(values))
         return dreward, dtaps.sum(0).view(ctx.shape), dbarrier, None, None

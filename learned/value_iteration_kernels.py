@@ -24,6 +24,7 @@ def forward(
     last: int,
     lanes: int,
     iterations: int,
+    scratch: Array,
     reward: Array,
     barrier: Array,
     weights: Array,
@@ -31,7 +32,6 @@ def forward(
     choices: Array,
     q: Array,
     v: Array,
-    scratch: Array,
 ) -> None:
     """Value iteration on some blocks.
 
@@ -39,6 +39,7 @@ def forward(
         first, last: the blocks, without the last.
         lanes: samples of a block; the last of all blocks may have fewer.
         iterations: at least 1.
+        scratch: [5, P].
         reward: [B, C, H, W].
         barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
         weights: [4, C + 1, 9], the value's taps last.
@@ -46,7 +47,6 @@ def forward(
         choices: [blocks, iterations, P] uint8 for the action that gave each value, or 1.
         q: [B, 4, H, W] for the last Q.
         v: [B, H, W] for its maximum over the actions.
-        scratch: [5, P].
     """
     for block in range(first, last):
         s = slice(block * lanes, (block + 1) * lanes)
@@ -83,7 +83,7 @@ def _forward(
         choice = choices[k % len(choices)][:size]
         if k < iterations - 1:
             backup(terms, weights[:, channels], before, after, choice, row, lanes)
-            clear(after, height, row, lanes)
+            clear(after, lanes, height, width)
     correlate(terms, weights[:, channels], before, row, lanes)
     maximise(terms, after, choice, row + lanes)
     for action in range(4):
@@ -96,6 +96,7 @@ def backward(
     first: int,
     last: int,
     lanes: int,
+    scratch: Array,
     reward: Array,
     weights: Array,
     values: Array,
@@ -105,16 +106,15 @@ def backward(
     dreward: Array,
     dbarrier: Array,
     dweights: Array,
-    scratch: Array,
 ) -> None:
     """Gradients of `forward` on some blocks: a value passes its own to the action that gave it, and to no other.
 
     Args:
         first, last, lanes, reward, weights, values, choices: as in `forward`, with the values of all iterations.
+        scratch: [9, P].
         dq, dv: gradients by the results.
         dreward, dbarrier: shaped as `reward` and `barrier`, for the gradients by them.
         dweights: [blocks, 4, C + 1, 9] zeros, for each block's part of the gradient by the weights.
-        scratch: [9, P].
     """
     for block in range(first, last):
         s = slice(block * lanes, (block + 1) * lanes)
@@ -159,7 +159,7 @@ def _backward(
         grads = total if k == iterations - 1 else routed  # only the last Q is a result
         overlap(dweights[:, channels], grads, values[k][:size], row, lanes)
         gather(plane, weights[:, channels], grads, row, lanes)
-        clear(plane, height, row, lanes)
+        clear(plane, lanes, height, width)
     for channel in range(channels):
         gather(plane, weights[:, channel], total, row, lanes)
         unpack(plane, dreward[:, channel])
@@ -175,29 +175,38 @@ def _backward(
 def pack(maps: Array, plane: Array) -> None:
     """Lay maps [L, H, W] side by side into a plane."""
     lanes, height, width = maps.shape
+    cells = cells_of(plane, lanes, height, width)
     for lane in range(lanes):
         for y in range(height):
             for x in range(width):
-                plane[((y + 1) * (width + 1) + x + 1) * lanes + lane] = maps[lane, y, x]
+                cells[y + 1, x + 1, lane] = maps[lane, y, x]
 
 
 @kernel
 def unpack(plane: Array, maps: Array) -> None:
     """Undo `pack`."""
     lanes, height, width = maps.shape
+    cells = cells_of(plane, lanes, height, width)
     for lane in range(lanes):
         for y in range(height):
             for x in range(width):
-                maps[lane, y, x] = plane[((y + 1) * (width + 1) + x + 1) * lanes + lane]
+                maps[lane, y, x] = cells[y + 1, x + 1, lane]
 
 
 @kernel
-def clear(plane: Array, height: int, row: int, lanes: int) -> None:
+def clear(plane: Array, lanes: int, height: int, width: int) -> None:
     """Set to zero all that is no cell of a map."""
-    plane[: row + lanes] = 0
-    for y in range(1, height + 1):
-        plane[(y + 1) * row : (y + 1) * row + lanes] = 0
-    plane[(height + 1) * row :] = 0
+    cells = cells_of(plane, lanes, height, width)
+    cells[0] = 0
+    cells[1:, 0] = 0
+    cells[height + 1] = 0
+    plane[len(plane) - 2 * lanes :] = 0
+
+
+@kernel
+def cells_of(plane: Array, lanes: int, height: int, width: int) -> Array:
+    """[H + 2, W + 1, L] a plane as rows of cells, cell (y, x) of the maps at (y + 1, x + 1)."""
+    return plane[: (height + 2) * (width + 1) * lanes].reshape((height + 2, width + 1, lanes))
 
 
 @fused
