@@ -72,5 +72,5 @@ _ARROW = {
     Seconds: pa.list_(pa.float32()),
 }
 
-SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode)])  # type: ignore[index]
+SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode)])  # type: ignore[index]  # or text
 """The columns of `episodes/*.parquet`."""

@@ -3,8 +3,9 @@
     python bench/timing/workers.py
 
 What two plain processes gain over one is all that the machine has to give: where its CPUs are two threads of one core,
-or others use them, that is far from 2. Timed is from the first recorded episode to the last, so that the start of the
-workers, paid once per run, is out.
+or others use them, that is far from 2, and it changes by the second: hence many short rounds and their median. Timed is
+from the moment when each worker has one episode recorded to the last record, so that the start of the workers, paid
+once per run, is out.
 """
 
 import sys
@@ -17,7 +18,7 @@ from time import perf_counter
 from bench.playing.runner import Progress, run
 from bench.reading.scenario import read_scenario
 
-ROUNDS = 5
+ROUNDS = 15
 STEPS, COUNT = 40, 150_000
 EPISODES = 40
 
@@ -63,7 +64,7 @@ def seconds_per_episode(workers: int) -> float:
 
     with TemporaryDirectory() as folder:
         run(read_scenario(TEXT, Path(__file__)), Path(folder), workers, watch)
-    return (times[-1] - times[0]) / (len(times) - 1)
+    return (times[-1] - times[workers - 1]) / (len(times) - workers)
 
 
 def seconds_in_plain_processes(processes: int) -> float:
