@@ -3,14 +3,13 @@
     python bench/timing/workers.py
 
 What two plain processes gain over one is all that the machine has to give: where its CPUs are two threads of one core,
-or others use them, that is far from 2, and it changes by the second: hence many short rounds and their median. Timed is
-from the moment when each worker has one episode recorded to the last record, so that the start of the workers, paid
-once per run, is out.
+or others use them, that is far from 2, and it changes by the second: hence many short rounds, of which all seconds are
+added up. Timed is from the moment when each worker has one episode recorded to the last record, so that the start of
+the workers, paid once per run, is out.
 """
 
 import sys
 from pathlib import Path
-from statistics import median
 from subprocess import PIPE, Popen
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -44,14 +43,17 @@ print(perf_counter() - began)
 
 
 def main() -> None:
-    """Print the gain of two over one in each round, and the medians."""
-    gains = []
+    """Print the gain of two over one in each round, and over all of them."""
+    rounds = []
     for _ in range(ROUNDS):
-        runner, plain = (side(1) / side(2) for side in (seconds_per_episode, seconds_in_plain_processes))
-        gains.append((runner, plain, runner / plain))
-        print(f"two beside one: {runner:.2f} times as fast in the runner, {plain:.2f} in plain processes")
-    runner, plain, share = (median(column) for column in zip(*gains, strict=True))
-    print(f"medians of {ROUNDS} rounds: runner {runner:.2f}, plain processes {plain:.2f}, their ratio {share:.2f}")
+        rounds.append([side(count) for side in (seconds_per_episode, seconds_in_plain_processes) for count in (1, 2)])
+        print(_gains(rounds[-1]))
+    print(f"in all {ROUNDS} rounds together: {_gains([sum(column) for column in zip(*rounds, strict=True)])}")
+
+
+def _gains(seconds: list[float]) -> str:
+    runner, runners, plain, plains = seconds
+    return f"two beside one: {runner / runners:.2f} times in the runner, {plain / plains:.2f} in plain processes"
 
 
 def seconds_per_episode(workers: int) -> float:
