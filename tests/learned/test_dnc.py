@@ -1,0 +1,274 @@
+"""The DNC does what its equations say, whatever the number of heads, rows and steps."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from torch import Tensor
+
+from learned.dnc import DNC
+from learned.dnc_access import AccessState, Heads, access, allocation
+from worlds.types import Array
+
+COUNTS = [1, 2, 4]
+
+
+def plain(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
+    """The plain form, called as the fast one."""
+    return access(heads.controls(interface), state)
+
+
+Form = Callable[[Heads, Tensor, AccessState[Tensor]], tuple[Tensor, AccessState[Tensor]]]
+FORMS = pytest.mark.parametrize("form", [plain])
+
+
+class Loop:
+    """The equations as loops over heads and rows, one sample, in float64."""
+
+    def __init__(self, heads: Heads, rows: int) -> None:
+        """All zeros."""
+        self.heads, self.rows = heads, rows
+        self.memory = np.zeros((rows, heads.word))
+        self.read, self.write = np.zeros((heads.reads, rows)), np.zeros((heads.writes, rows))
+        self.usage = np.zeros(rows)
+        self.links, self.precedence = np.zeros((heads.linked, rows, rows)), np.zeros((heads.linked, rows))
+
+    def step(self, interface: Array) -> Array:
+        """What is read [R, D]."""
+        word, rows, linked = self.heads.word, self.rows, self.heads.linked
+        numbers = iter(interface)
+
+        def take(count: int) -> Array:
+            return np.array([next(numbers) for _ in range(count)])
+
+        writers = [
+            (take(word), softplus(take(1)), take(word), sigmoid(take(word)), sigmoid(take(1)), sigmoid(take(1)))
+            for _ in range(self.heads.writes)
+        ]
+        readers = [
+            (take(word), softplus(take(1)), sigmoid(take(1)), softmax(take(2 * linked + 1)))
+            for _ in range(self.heads.reads)
+        ]
+        for n in range(rows):
+            written = 1 - np.prod([1 - w[n] for w in self.write])
+            kept = np.prod([1 - free * w[n] for (_, _, free, _), w in zip(readers, self.read, strict=True)])
+            self.usage[n] = (self.usage[n] + (1 - self.usage[n]) * written) * kept
+        used, weights = self.usage.copy(), []
+        for key, strength, _, _, allocate, gate in writers:
+            free = allocated(used)
+            used = used + (1 - used) * allocate * gate * free
+            weights.append(gate * (allocate * free + (1 - allocate) * similar(key, strength, self.memory)))
+        self.write = np.array(weights)
+        memory = self.memory.copy()
+        for (_, _, _, erase, _, _), w in zip(writers, self.write, strict=True):
+            memory *= 1 - np.outer(w, erase)
+        for (_, _, value, _, _, _), w in zip(writers, self.write, strict=True):
+            memory += np.outer(w, value)
+        self.memory = memory
+        for i in range(linked):
+            w = self.write[i]
+            for n in range(rows):
+                for m in range(rows):
+                    link = (1 - w[n] - w[m]) * self.links[i, n, m] + w[n] * self.precedence[i, m]
+                    self.links[i, n, m] = 0 if n == m else link
+            self.precedence[i] = (1 - w.sum()) * self.precedence[i] + w
+        for j, (key, strength, _, modes) in enumerate(readers):
+            before = self.read[j].copy()
+            self.read[j] = modes[-1] * similar(key, strength, memory)
+            for i in range(linked):
+                self.read[j] += modes[i] * self.links[i].T @ before + modes[linked + i] * self.links[i] @ before
+        return self.read @ memory
+
+
+def softplus(x: Array) -> Array:
+    """log(1 + e^x)."""
+    return np.log1p(np.exp(x))
+
+
+def sigmoid(x: Array) -> Array:
+    """1 / (1 + e^-x)."""
+    return 1 / (1 + np.exp(-x))
+
+
+def softmax(x: Array) -> Array:
+    """A distribution."""
+    return np.exp(x) / np.exp(x).sum()
+
+
+def similar(key: Array, strength: Array, memory: Array) -> Array:
+    """The weighting by cosine similarity of a key and the rows of a memory [N, D]."""
+    norms = [np.sqrt(key @ key + 1e-6) * np.sqrt(row @ row + 1e-6) + 1e-6 for row in memory]
+    return softmax(np.array([strength[0] * (key @ row) / norm for row, norm in zip(memory, norms, strict=True)]))
+
+
+def allocated(usage: Array) -> Array:
+    """The weighting that prefers the rows least used."""
+    used, product, weights = 1e-6 + (1 - 1e-6) * usage, 1.0, np.zeros(len(usage))
+    for n in sorted(range(len(used)), key=lambda n: used[n]):
+        weights[n] = (1 - used[n]) * product
+        product *= used[n]
+    return weights
+
+
+def draw(generator: torch.Generator, *shape: int, scale: float = 2.0, dtype: torch.dtype = torch.float64) -> Tensor:
+    """Normal numbers."""
+    return scale * torch.randn(*shape, generator=generator, dtype=dtype)
+
+
+def used(heads: Heads, rows: int, batch: int, generator: torch.Generator) -> AccessState[Tensor]:
+    """A state with memory and usage drawn.
+
+    From zeros, rows stay alike but for rounding, which then decides in which of them a form writes.
+    """
+    state = heads.blank(rows, (batch,), torch.zeros((), dtype=torch.float64))
+    usage = torch.rand(batch, rows, generator=generator, dtype=torch.float64)
+    return state._replace(memory=draw(generator, batch, heads.word, rows), usage=usage)
+
+
+@FORMS
+@pytest.mark.parametrize("links", [True, False])
+@pytest.mark.parametrize("writes", COUNTS)
+@pytest.mark.parametrize("reads", COUNTS)
+def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: int, links: bool) -> None:
+    """The form agrees with loops over heads and rows in what is read and in the state, to 1e-5."""
+    generator = torch.Generator().manual_seed(0)
+    heads = Heads(reads, writes, 5, links)
+    loop, state = Loop(heads, 9), used(heads, 9, 2, generator)
+    loop.memory, loop.usage = state.memory[1].T.numpy(), state.usage[1].numpy().copy()
+    for _ in range(50):
+        interface = draw(generator, 2, heads.interface)
+        read, state = form(heads, interface, state)
+        expected = loop.step(interface[1].numpy())
+        np.testing.assert_allclose(read[1], expected, atol=1e-5)
+    np.testing.assert_allclose(state.memory[1].T, loop.memory, atol=1e-5)
+    np.testing.assert_allclose(state.read_weights[1], loop.read, atol=1e-5)
+    np.testing.assert_allclose(state.write_weights[1], loop.write, atol=1e-5)
+    np.testing.assert_allclose(state.usage[1], loop.usage, atol=1e-5)
+    np.testing.assert_allclose(state.links[1], loop.links, atol=1e-5)
+    np.testing.assert_allclose(state.precedence[1], loop.precedence, atol=1e-5)
+
+
+@FORMS
+def test_the_first_step_is_that_of_the_equations(form: Form) -> None:
+    """From zeros, where all rows are alike, two heads are allocated the rows that the loops allocate to them."""
+    heads = Heads(2, 2, 5)
+    interface = draw(torch.Generator().manual_seed(0), 1, heads.interface)
+    loop = Loop(heads, 9)
+    expected = loop.step(interface[0].numpy())
+    reads, state = form(heads, interface, heads.blank(9, (1,), interface))
+    np.testing.assert_allclose(reads[0], expected, atol=1e-5)
+    np.testing.assert_allclose(state.write_weights[0], loop.write, atol=1e-5)
+
+
+@FORMS
+@settings(deadline=None, max_examples=30)
+@given(reads=st.integers(1, 4), writes=st.integers(1, 4), seed=st.integers(0, 999))
+def test_weightings_stay_weightings(form: Form, reads: int, writes: int, seed: int) -> None:
+    """Read modes are distributions; weightings, precedences and the rows and columns of links are >= 0, sums <= 1."""
+    generator = torch.Generator().manual_seed(seed)
+    heads = Heads(reads, writes, 4)
+    state = heads.blank(8, (3,), torch.zeros((), dtype=torch.float64))
+    for _ in range(20):
+        interface = draw(generator, 3, heads.interface, scale=5.0)
+        modes = heads.controls(interface).read_modes
+        torch.testing.assert_close(modes.sum(-1), torch.ones_like(modes[..., 0]))
+        _, state = form(heads, interface, state)
+        sums = (state.read_weights, state.write_weights, state.precedence, state.links, state.links.mT)
+        assert all((part >= 0).all() and (part.sum(-1) <= 1 + 1e-9).all() for part in sums)
+        assert (state.usage >= 0).all() and (state.usage <= 1).all()  # noqa: PT018  # one truth
+
+
+@FORMS
+def test_full_allocation_writes_the_freed_row(form: Form) -> None:
+    """With every row used, what a head has read and frees is where an allocating head writes next."""
+    heads = Heads(1, 1, 3)
+    state = heads.blank(5)
+    state = state._replace(usage=torch.ones(5), read_weights=torch.eye(5)[None, 2], memory=torch.rand(3, 5))
+    on, value = 20.0, [0.1, 0.2, 0.3]
+    write = [0, 0, 0, 0, *value, on, on, on, on, on]  # key, strength, value, erase, allocation gate, write gate
+    read = [0, 0, 0, 0, on, 0, 0, 0]  # key, strength, free gate, modes
+    _, after = form(heads, torch.tensor(write + read), state)
+    torch.testing.assert_close(after.write_weights[0], torch.eye(5)[2], atol=1e-5, rtol=0)
+    torch.testing.assert_close(after.memory[:, 2], torch.tensor(value), atol=1e-5, rtol=0)
+    torch.testing.assert_close(after.memory[:, [0, 1, 3, 4]], state.memory[:, [0, 1, 3, 4]], atol=1e-4, rtol=0)
+
+
+def test_allocation_by_hand() -> None:
+    """The least used row comes first, then the others by what those before left; of equals the first."""
+    weights = allocation(torch.tensor([0.5, 0.25, 1.0, 0.25], dtype=torch.float64))
+    expected = torch.tensor([0.5 * 0.0625, 0.75, 0.0, 0.25 * 0.75], dtype=torch.float64)
+    torch.testing.assert_close(weights, expected, atol=1e-5, rtol=0)
+
+
+@FORMS
+def test_saturated_usage_gives_numbers(form: Form) -> None:
+    """With all rows full, nothing freed and strong gates, values and gradients are finite."""
+    heads = Heads(2, 2, 4)
+    state = heads.blank(6, (2,))
+    state = state._replace(usage=torch.ones(2, 6), memory=1e3 * torch.ones(2, 4, 6))
+    interface = torch.full((2, heads.interface), 20.0, requires_grad=True)
+    loss = torch.zeros(())
+    for _ in range(10):
+        reads, state = form(heads, interface * torch.tensor([[1.0], [-1.0]]), state)
+        loss = loss + reads.sum()
+    loss.backward()
+    assert interface.grad is not None
+    assert interface.grad.isfinite().all()
+    assert all(part.isfinite().all() for part in state)
+
+
+@FORMS
+def test_ten_thousand_random_steps_give_numbers(form: Form) -> None:
+    """In float32, with interfaces as strong as the clip lets them be."""
+    heads = Heads(2, 2, 4)
+    generator = torch.Generator().manual_seed(1)
+    state = heads.blank(8, (1,))
+    for _ in range(10_000):
+        interface = draw(generator, 1, heads.interface, scale=10.0, dtype=torch.float32).clamp(-20, 20)
+        reads, state = form(heads, interface, state)
+        assert reads.isfinite().all()
+    assert all(part.isfinite().all() for part in state)
+
+
+def test_one_sample_is_a_batch_of_one() -> None:
+    """Without a batch, shapes lose it and numbers stay; step by step is the same as in one go."""
+    network = DNC(3, 5, Heads(), rows=6, hidden=16)
+    sequence = torch.randn(7, 3)
+    outputs, state = network(sequence)
+    batched, _ = network(sequence[None])
+    torch.testing.assert_close(outputs, batched[0])
+    assert state.access.memory.shape == (8, 6)
+    _, middle = network(sequence[:4])
+    rest, _ = network(sequence[4:], middle)
+    torch.testing.assert_close(rest, outputs[4:])
+
+
+def test_rows_may_change_after_training() -> None:
+    """The same parameters work with another number of rows."""
+    network = DNC(3, 5, Heads(), rows=6, hidden=16)
+    names = set(network.state_dict())
+    network.rows = 50
+    outputs, state = network(torch.randn(2, 3, 3))
+    assert outputs.shape == (2, 3, 5)
+    assert state.access.links.shape == (2, 1, 50, 50)
+    assert set(network.state_dict()) == names
+
+
+def test_cell_and_outputs_are_clipped() -> None:
+    """Neither leaves +-clip, however large the weights."""
+    network = DNC(3, 5, Heads(), rows=6, hidden=16, clip=0.5)
+    with torch.no_grad():
+        for parameter in network.parameters():
+            parameter.mul_(100)
+    outputs, state = network(torch.randn(2, 9, 3))
+    assert outputs.abs().max() == 0.5
+    assert state.cell.abs().max() == 0.5
+
+
+def test_the_paper_s_interface() -> None:
+    """79 numbers for 4 read and 1 write heads, 40 for 1 and 1, 127 for 1 and 4, 26,812 for the robot's 4 and 16."""
+    sizes = [Heads(4, 1, 8), Heads(1, 1, 8), Heads(1, 4, 8), Heads(4, 16, 512)]
+    assert [heads.interface for heads in sizes] == [79, 40, 127, 26_812]
