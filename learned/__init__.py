@@ -1,4 +1,11 @@
 """Learned policies, by the name they have in a scenario. Importing this imports none of them."""
 
-LEARNED: dict[str, str] = {}
+LEARNED = {
+    "macn": "learned.macn:Macn",
+    "vin": "learned.vin:Vin",
+    "cnn_memory": "learned.cnn_memory:CnnMemory",
+}
 """Policies that ship with the project, as `module:class`."""
+
+EXTRAS = dict.fromkeys(LEARNED, "learned")
+"""The extra of the project (`pip install ".[learned]"`) that a policy needs."""

@@ -1,0 +1,117 @@
+"""Trained weights: a safetensors file, and beside it a card in JSON that says what they are and how they came about."""
+
+import json
+import os
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from safetensors import SafetensorError
+from safetensors.torch import load, save
+from torch import Tensor, nn
+
+from worlds.files import sha256
+from worlds.mistake import Mistake, Unavailable
+
+SHIPPED = Path(__file__).with_name("checkpoints")
+"""Where the checkpoints are that go by a name alone."""
+
+SUFFIX = ".safetensors"
+
+
+class Card(BaseModel):
+    """What a checkpoint says of itself."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    network: str
+    """The class of its settings."""
+    settings: dict[str, Any]
+    """Those that its weights were trained with."""
+    sha256: str
+    """Of the file of weights."""
+    training: dict[str, Any] = {}
+    """How it was made, and what it reached."""
+
+
+def place_of(checkpoint: str, folder: Path = Path()) -> Path:
+    """The file of weights of a checkpoint.
+
+    Args:
+        checkpoint: the name of a shipped one, or a file that ends in `.safetensors`.
+        folder: a relative file starts there.
+
+    Raises:
+        Unavailable: no checkpoint of that name is shipped yet.
+        Mistake: there is no such file.
+    """
+    if checkpoint.endswith(SUFFIX):
+        place = (folder / checkpoint).absolute()
+        if not place.exists():
+            raise Mistake(f"an existing file (looked for {place})")
+        return place
+    place = SHIPPED / f"{checkpoint}{SUFFIX}"
+    if not place.exists():
+        names = sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))
+        near = "".join(f"; did you mean {name}?" for name in get_close_matches(checkpoint, names, n=1))
+        raise Unavailable(f"the checkpoint {checkpoint} does not exist yet{near}")
+    return place
+
+
+def read_card(place: Path) -> Card:
+    """The card beside a file of weights.
+
+    Raises:
+        Mistake: there is none, or it cannot be read.
+    """
+    card = place.with_suffix(".json")
+    try:
+        return Card.model_validate_json(card.read_text("utf-8"))
+    except OSError:
+        raise Mistake(f"a checkpoint with its card (there is no {card.name} beside {place.name})") from None
+    except ValidationError as error:
+        detail = error.errors()[0]
+        where = ".".join(map(str, detail["loc"]))
+        told = f"{where}: {detail['msg']}" if where else detail["msg"]
+        raise Mistake(f"a checkpoint whose card can be read ({card.name}: {told})") from None
+
+
+def read_weights(place: Path, card: Card, network: nn.Module) -> None:
+    """Put the weights of a file into a network.
+
+    Raises:
+        Mistake: the file is not the one that its card was written for, or it does not fit the network.
+    """
+    contents = place.read_bytes()
+    if sha256(contents) != card.sha256:
+        raise Mistake(f"a checkpoint that is whole ({place.name} is not the file that its card was written for)")
+    try:
+        weights = load(contents)
+    except SafetensorError as error:
+        raise Mistake(f"a file of weights ({place.name}: {error})") from None
+    wanted = {name: tuple(tensor.shape) for name, tensor in network.state_dict().items()}
+    found = {name: tuple(tensor.shape) for name, tensor in weights.items()}
+    for name in sorted(wanted.keys() | found.keys()):
+        if wanted.get(name) != found.get(name):
+            shapes = f"{name} is {_told(found.get(name))} there, {_told(wanted.get(name))} here"
+            raise Mistake(f"a checkpoint that fits its card ({place.name}: {shapes})")
+    network.load_state_dict(weights)
+
+
+def write(place: Path, network: str, settings: dict[str, Any], weights: dict[str, Tensor], training: Any) -> None:
+    """Write a file of weights and its card, each whole or not at all."""
+    contents = save({name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()})
+    card = Card(network=network, settings=settings, sha256=sha256(contents), training=training)
+    _put(place, contents)
+    _put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
+
+
+def _put(place: Path, contents: bytes) -> None:
+    aside = place.with_name(f".{place.name}.{os.getpid()}")
+    aside.write_bytes(contents)
+    aside.replace(place)
+
+
+def _told(shape: tuple[int, ...] | None) -> str:
+    return "missing" if shape is None else f"[{', '.join(map(str, shape))}]"

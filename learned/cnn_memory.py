@@ -1,0 +1,38 @@
+"""CNN + Memory: a MACN with four convolutions in the place of its VI module (Khan et al. 2018, section 4)."""
+
+from itertools import pairwise
+from typing import cast
+
+from torch import Tensor, nn
+
+from learned.encoding import CHANNELS, Inputs
+from learned.memory import Remembering, RememberingNetwork
+from learned.value_iteration import ACTIONS
+from worlds.settings import Positive
+
+
+class CnnMemory(Remembering):
+    """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
+
+    channels: Positive = 32
+    """Of the first three convolutions; the last has as many as there are moves, like Q."""
+
+    def network(self) -> "CnnMemoryNetwork":
+        """A network with weights drawn anew."""
+        return CnnMemoryNetwork(self)
+
+
+class CnnMemoryNetwork(RememberingNetwork):
+    """Convolutions before a memory."""
+
+    def __init__(self, settings: CnnMemory) -> None:
+        """Draw the weights."""
+        rows, columns = settings.size
+        super().__init__(settings, ACTIONS * rows * columns)
+        widths = CHANNELS, *[settings.channels] * 3, ACTIONS
+        layers = ((nn.Conv2d(before, after, 3, padding=1), nn.ReLU()) for before, after in pairwise(widths))
+        self.convolutions = nn.Sequential(*(part for layer in layers for part in layer))
+
+    def plan(self, inputs: Inputs) -> Tensor:
+        """The maps of the last layer: [B, 4 * H * W]."""
+        return cast(Tensor, self.convolutions(inputs.image)).flatten(1)

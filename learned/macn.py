@@ -1,0 +1,37 @@
+"""Memory augmented control networks: plan on what is seen, remember, decide (Khan et al. 2018, section 3 and figure 2).
+
+How the values enter the controller is not said there. Here they come relative to the agent's own, since what matters is
+where they are higher; with them comes Q at the agent's cell.
+"""
+
+import torch
+from torch import Tensor
+
+from learned.encoding import Inputs
+from learned.memory import Remembering, RememberingNetwork
+from learned.value_iteration import ACTIONS
+from learned.vin import Planning
+
+
+class Macn(Planning, Remembering):
+    """MACN: value iteration on what the sensor shows, then a DNC, an LSTM or no memory."""
+
+    def network(self) -> "MacnNetwork":
+        """A network with weights drawn anew."""
+        return MacnNetwork(self)
+
+
+class MacnNetwork(RememberingNetwork):
+    """A VI module before a memory."""
+
+    def __init__(self, settings: Macn) -> None:
+        """Draw the weights."""
+        rows, columns = settings.size
+        super().__init__(settings, rows * columns + ACTIONS)
+        self.planner = settings.planner()
+
+    def plan(self, inputs: Inputs) -> Tensor:
+        """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
+        q, v = self.planner(inputs.image)
+        values = torch.cat([v.flatten(1), inputs.here(q)], 1)  # [B, H * W + 4]
+        return values - inputs.here(v[:, None])

@@ -1,0 +1,191 @@
+"""What all learned policies share: settings that find their weights, and the decisions of one episode.
+
+A setting that a scenario does not give is as in the checkpoint's card; one that it does give must be as in the card,
+unless no weight depends on it (`FREE`).
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self
+
+import numpy as np
+import torch
+from pydantic import ModelWrapValidatorHandler, ValidationInfo, field_validator, model_validator
+from torch import Tensor, nn
+
+from learned import checkpoint
+from learned.encoding import STILL, Frame, Inputs, Known, encode
+from worlds.belief import KnownMap
+from worlds.files import read, sha256
+from worlds.mistake import Mistake
+from worlds.settings import Count, Positive, Settings
+from worlds.types import Cell, Move, Observation, Task
+
+NONE = "none"
+"""In the place of a checkpoint: fresh weights."""
+
+FREE = frozenset({"checkpoint", "seed", "device", "iterations", "memory_rows"})
+"""Settings that may differ from those of the training."""
+
+
+class Network(nn.Module):
+    """A network that takes one step at a time."""
+
+    def blank(self, batch: tuple[int, ...]) -> Any:
+        """The state before the first step: nested tuples of tensors [*batch, ...]."""
+        raise NotImplementedError
+
+    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
+        """From what is seen and the state before to the scores [B, 4] of the moves and the state after."""
+        raise NotImplementedError
+
+
+class Policy(Settings):
+    """A network as an agent."""
+
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+
+    checkpoint: str
+    """The name of a shipped checkpoint, a file that ends in `.safetensors`, or `none` for fresh weights."""
+    seed: Count = 0
+    """Of fresh weights."""
+    device: Literal["cpu", "cuda"] = "cpu"
+    """Where the network runs."""
+    reading: Literal["window", "map"] = "window"
+    """What the network plans on: a window around the agent, or the whole map, which ties it to one size."""
+    size: tuple[Positive, Positive] = (11, 11)
+    """Rows and columns of that window or map."""
+    stitched: bool = False
+    """Whether it sees the map known so far; else, the current view alone."""
+
+    def network(self) -> Network:
+        """A network with weights drawn anew."""
+        raise NotImplementedError
+
+    def start(self, task: Task, rng: np.random.Generator) -> "PolicyAgent":
+        """A fresh agent; it needs no luck.
+
+        Raises:
+            Mistake: a network that was made for maps of one size meets another.
+        """
+        del rng
+        extent = int(task.extent[0]), int(task.extent[1])
+        if self.reading == "map" and self.size != extent:
+            raise Mistake(f"got a map of {extent[0]}x{extent[1]}; expected {self.size[0]}x{self.size[1]}, the size")
+        return PolicyAgent(self, task)
+
+    def parameter_bytes(self) -> int:
+        """The bytes of all weights."""
+        return sum(parameter.nbytes for parameter in weighted(self).parameters())
+
+    def words(self) -> str:
+        """The settings, and the digest of the weights in place of where they are."""
+        digest = "" if self.checkpoint == NONE else sha256(read(checkpoint.place_of(self.checkpoint)))
+        return f"{type(self).__name__} {self.model_dump_json(exclude={'checkpoint'})} weights={digest}"
+
+    @field_validator("checkpoint")
+    @classmethod
+    def _found(cls, name: str, info: ValidationInfo) -> str:
+        if name == NONE:
+            return name
+        place = checkpoint.place_of(name, Path((info.context or {}).get("folder", "")))
+        return str(place) if name.endswith(checkpoint.SUFFIX) else name
+
+    @field_validator("device")
+    @classmethod
+    def _at_hand(cls, device: str) -> str:
+        if device == "cuda" and not torch.cuda.is_available():
+            raise Mistake("cpu, for PyTorch finds no CUDA device here")
+        return device
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _as_trained(cls, block: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        settings = handler(block)
+        if isinstance(block, dict) and settings.checkpoint != NONE:
+            settings = handler(settings.of_training() | block)
+        weighted(settings)  # whatever is wrong with the weights is told now
+        return settings
+
+    def of_training(self) -> dict[str, Any]:
+        """The settings on the checkpoint's card.
+
+        Raises:
+            Mistake: it is the card of another network, or differs from these settings where it must not.
+        """
+        card, said = checkpoint.read_card(checkpoint.place_of(self.checkpoint)), self.model_dump(mode="json")
+        if card.network != type(self).__name__:
+            raise Mistake(f"a checkpoint of {type(self).__name__} (this is one of {card.network})")
+        if unknown := sorted(card.settings.keys() - said.keys()):
+            raise Mistake(f"a checkpoint of this version (its card has {unknown[0]}, which is no setting)")
+        for name in sorted(self.model_fields_set & card.settings.keys() - FREE):
+            if said[name] != card.settings[name]:
+                raise Mistake(f"{name} {card.settings[name]}, with which the checkpoint was trained")
+        return card.settings
+
+
+@lru_cache(maxsize=64)
+def weighted(settings: Policy) -> Network:
+    """The network of some settings, with its weights, on its device; made once in a process.
+
+    Raises:
+        Mistake: the checkpoint is broken or does not fit.
+    """
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(settings.seed)
+        network = settings.network().eval()
+    if settings.checkpoint != NONE:
+        place = checkpoint.place_of(settings.checkpoint)
+        checkpoint.read_weights(place, checkpoint.read_card(place), network)
+    return network.requires_grad_(False).to(settings.device)
+
+
+class PolicyAgent:
+    """One episode of a network, which takes the move of the highest score; of equals, the first."""
+
+    def __init__(self, settings: Policy, task: Task) -> None:
+        """Nothing is remembered yet."""
+        self.network = weighted(settings)
+        self.frame = Frame(settings.size, settings.reading == "window")
+        self.device = settings.device
+        self.goal: Cell = task.goal
+        self.stitched = KnownMap(task.extent) if settings.stitched else None
+        self.state = self.network.blank((1,))
+        self.move = STILL
+
+    def act(self, observation: Observation) -> Move:
+        """One step of the network."""
+        inputs = encode(self._known(observation), self.frame).to(self.device)
+        with torch.inference_mode():
+            scores, self.state = self.network(inputs, self.state)
+            self.move = int(scores.argmax())
+        return Move(self.move)
+
+    def memory_bytes(self) -> int:
+        """The state of the network, and the known map where it sees one."""
+        known = self.stitched.cells.nbytes if self.stitched else 0
+        return known + sum(tensor.nbytes for tensor in tensors(self.state))
+
+    def search_nodes(self) -> int:
+        """There is no search."""
+        return 0
+
+    def _known(self, observation: Observation) -> Known:
+        """What this agent knows, as a batch of one."""
+        cells, corner = observation.view, np.array(observation.place, np.int64) - len(observation.view) // 2
+        if self.stitched:
+            self.stitched.update(observation)
+            cells, corner = self.stitched.cells, np.zeros(2, np.int64)
+        places, goals = (np.array([place], np.int64) for place in (observation.place, self.goal))  # [1, 2]
+        moves, blocked = np.array([self.move], np.int64), np.array([observation.blocked])
+        return Known(cells[None], corner[None], places, goals, moves, blocked)
+
+
+def tensors(state: Any) -> Iterator[Tensor]:
+    """All tensors of a network's state."""
+    if isinstance(state, Tensor):
+        yield state
+    else:
+        for part in state:
+            yield from tensors(part)
