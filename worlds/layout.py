@@ -49,10 +49,6 @@ class DrawnMaps(Settings, ABC):
                 return found
         raise MapError(f"{type(self).__name__}: no task with {wanted(conditions)} was found on {MAPS} maps")
 
-    def words(self) -> str:
-        """The settings, as JSON."""
-        return f"{type(self).__name__} {self.model_dump_json()}"
-
     def tasks(self, conditions: GridConditions) -> int | None:
         """Any number."""
         del conditions

@@ -11,6 +11,10 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
 
+    def words(self) -> str:
+        """All that fixes what these settings make, as text; of a file the contents count, not the place."""
+        return f"{type(self).__name__} {self.model_dump_json()}"
+
 
 def _ascending(bounds: tuple[int, int]) -> tuple[int, int]:
     if bounds[0] > bounds[1]:

@@ -5,11 +5,10 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from pydantic import BaseModel
-
 import planners
 import worlds
 from bench.reading.scenario import Entry, Variant
+from worlds.settings import Settings
 from worlds.streams import digest
 
 DECIDE = ("judge.py", "loop.py")
@@ -34,12 +33,11 @@ def agent_key(entry: Entry) -> str:
     Raises:
         TypeError: an agent without settings, which was skipped.
     """
-    if not isinstance(entry.settings, BaseModel):
+    if not isinstance(entry.settings, Settings):
         raise TypeError(f"{entry.label} has no settings: {entry.skipped}")
     settings = type(entry.settings)
     return digest(
-        settings.__name__,
-        entry.settings.model_dump_json(),
+        entry.settings.words(),
         _sources(settings.__module__),
         _folder(Path(planners.__file__).parent),
     )

@@ -15,7 +15,7 @@ from bench.playing.episode import Episode
 from bench.playing.judge import GridJudge
 from bench.playing.keys import agent_key, world_key
 from bench.reading.scenario import Entry, Scenario, Variant
-from planners import PLANNERS
+from bench.reading.tables import AGENT
 from planners.astar import AStar
 from worlds.streams import stream
 from worlds.types import Agent, AgentSettings, Outcome, World
@@ -66,7 +66,7 @@ def prepare(scenario: Scenario) -> None:
     for variant in scenario.variants[:1]:
         _facts(variant, 0)
         for entry in variant.agents:
-            if entry.settings is not None and entry.target in PLANNERS.values():
+            if entry.settings is not None and entry.target in AGENT.shipped.values():
                 _warm_up(variant, entry)
 
 

@@ -10,6 +10,7 @@ from pydantic_core import ErrorDetails
 
 from bench.reading.positions import Fault, Value
 from bench.reading.shapes import Shape, shape
+from worlds.mistake import Unavailable
 from worlds.settings import Settings
 
 Block = TypeVar("Block", bound=Settings)
@@ -23,6 +24,9 @@ def read_block(settings: type[Block], value: Value, folder: Path, faults: list[F
         value: its block.
         folder: relative paths start there.
         faults: a value that waits for an environment variable adds none.
+
+    Raises:
+        Unavailable: the class needs something that is not there.
     """
     try:
         return settings.model_validate(_typed(value, shape(settings)), context={"folder": folder})
@@ -30,6 +34,8 @@ def read_block(settings: type[Block], value: Value, folder: Path, faults: list[F
         details = error.errors(include_url=False)
         faults.extend(fault for detail in details for fault in _fault(detail, value, shape(settings)))
         return None
+    except Unavailable:
+        raise
     except Exception as error:  # noqa: BLE001  a user's class may raise anything
         if not any(inner.unset for inner in value.below()):
             faults.append(value.wrong(f"settings that its class can read; it raises {raised(error)}"))

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import ModuleType
 
 from bench.reading.blocks import near, one_of, raised
-from bench.reading.tables import Table
-from planners import EXTRAS
+from bench.reading.tables import EXTRAS, Table
+from worlds.mistake import Unavailable
 from worlds.settings import Settings
 from worlds.streams import digest
 
@@ -23,10 +23,6 @@ class PluginError(ValueError):
         """Keep the nearest valid name beside the text."""
         super().__init__(expected)
         self.near = near
-
-
-class MissingPackageError(Exception):
-    """A plug-in that needs a package which is not installed; the text says which, and how to get it."""
 
 
 def target(table: Table, name: str, folder: Path) -> str:
@@ -54,7 +50,7 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
 
     Raises:
         PluginError: there is none, it cannot be imported, or it is not a class of settings for this.
-        MissingPackageError: it needs a package that is not installed.
+        Unavailable: it needs a package that is not installed; the text says which, and how to get it.
     """
     place, _, class_name = target.rpartition(":")
     module = _import(name, place)
@@ -80,7 +76,7 @@ def _import(name: str, place: str) -> ModuleType:
         if _lies_beside(Path(place), missing):
             alone = f"one file alone, or a package that is installed; it imports {missing}, which lies beside it"
             raise PluginError(alone) from None
-        raise MissingPackageError(_how_to_get(name, missing)) from None
+        raise Unavailable(_how_to_get(name, missing)) from None
     except FileNotFoundError as error:
         if error.filename != place:
             raise PluginError(_importable(error)) from None

@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from bench.reading.page import CONDITIONS, VARIED, Page
-from bench.reading.plugins import MissingPackageError, PluginError, load
+from bench.reading.plugins import PluginError, load
 from bench.reading.shapes import Lenient, Schema
 from bench.reading.tables import AGENT, FAMILY, KIND, Table
+from worlds.mistake import Unavailable
 from worlds.settings import Settings
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -60,7 +61,7 @@ def _classes(table: Table) -> dict[str, type[BaseModel]]:
     for name, target in table.targets().items():
         try:
             found[name] = load(table, name, target)
-        except (PluginError, MissingPackageError):
+        except (PluginError, Unavailable):
             continue
     return found
 

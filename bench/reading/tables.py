@@ -8,7 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from planners import PLANNERS
+import learned
+import planners
 from worlds import FAMILIES, KINDS
 
 
@@ -29,8 +30,15 @@ class Table(NamedTuple):
 
 
 FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks"))
-AGENT = Table(PLANNERS, ("fogbench.planners", "fogbench.learned"), ("kinds", "start", "parameter_bytes"))
+AGENT = Table(
+    {**planners.PLANNERS, **learned.LEARNED},
+    ("fogbench.planners", "fogbench.learned"),
+    ("kinds", "start", "parameter_bytes"),
+)
 KIND = Table(KINDS, (), ())
+
+EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}
+"""The extra of the project that an agent needs."""
 
 
 @cache

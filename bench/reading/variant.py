@@ -8,9 +8,10 @@ from typing import Any, NamedTuple, cast
 
 from bench.reading.blocks import Block, near, one_of, read_block
 from bench.reading.page import CONDITIONS, Page
-from bench.reading.plugins import MissingPackageError, PluginError, load, target
+from bench.reading.plugins import PluginError, load, target
 from bench.reading.positions import Fault, Value, join
 from bench.reading.tables import AGENT, FAMILY, KIND, Table
+from worlds.mistake import Unavailable
 from worlds.settings import Settings
 from worlds.types import AgentSettings, MapFamily
 
@@ -93,7 +94,10 @@ class Reading:
         place, found, missing = self._class(AGENT, name, wrong)
         if found is None:
             return Listed(label, place, None, missing) if missing else None
-        settings = cast(AgentSettings | None, self._block(found, block))
+        try:
+            settings = cast(AgentSettings | None, self._block(found, block))
+        except Unavailable as lack:
+            return Listed(label, place, None, str(lack))
         kinds = cast(AgentSettings, found).kinds
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
         return Listed(label, place, settings, skipped) if settings else None
@@ -133,7 +137,7 @@ class Reading:
         except PluginError as error:
             self.faults.append(wrong(str(error), error.near))
             return place, None, ""
-        except MissingPackageError as error:
+        except Unavailable as error:
             return place, None, str(error)
 
     def _block(self, settings: type[Block], value: Value) -> Block | None:
