@@ -10,8 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+import torch
 from PIL import Image
 
+import learned
 import planners
 import worlds
 from worlds.blobs import Blobs
@@ -28,8 +30,17 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "frontier": [{}],
     "rrt_star": [{"iterations": 200}, {"planner": "RRTConnect", "iterations": 200}],
     "random_walk": [{}],
+    "macn": [
+        {"checkpoint": "none"},
+        {"checkpoint": "none", "reads": 1, "writes": 2, "memory_rows": 7, "links": False, "discount": 0.9},
+        {"checkpoint": "none", "memory": "lstm", "seed": 1},
+        {"checkpoint": "none", "memory": "feedforward", "stitched": True},
+        {"checkpoint": "none", "reading": "map", "size": [14, 14]},
+    ],
+    "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
+    "cnn_memory": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
 }
-"""Settings of every entry of `planners.PLANNERS`, small enough to play fast."""
+"""Settings of every entry of `planners.PLANNERS` and `learned.LEARNED`, small enough to play fast."""
 
 FAMILIES: dict[str, list[dict[str, Any]]] = {
     "blobs": [
@@ -93,6 +104,15 @@ def decide(world: World, settings: AgentSettings, seed: int) -> Iterator[Decisio
         state = step.state
 
 
+@pytest.fixture(autouse=True)
+def _one_thread() -> Iterator[None]:
+    """Networks run as in a worker process."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    yield
+    torch.set_num_threads(before)
+
+
 @pytest.fixture
 def play() -> Callable[..., Iterator[Decision]]:
     """Plays an episode of a world, an agent's settings and a seed, decision by decision."""
@@ -100,12 +120,20 @@ def play() -> Callable[..., Iterator[Decision]]:
 
 
 EXAMPLES = {**AGENTS, **FAMILIES}
-TABLES = {**planners.PLANNERS, **worlds.FAMILIES}
+AGENT_TABLE = {**planners.PLANNERS, **learned.LEARNED}
+TABLES = {**AGENT_TABLE, **worlds.FAMILIES}
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Run a test for all examples of all entries of the table that it asks for."""
-    for name, table in (("agent", planners.PLANNERS), ("family", worlds.FAMILIES), ("settings", TABLES)):
+    tables = {
+        "agent": AGENT_TABLE,
+        "planner": planners.PLANNERS,
+        "policy": learned.LEARNED,
+        "family": worlds.FAMILIES,
+        "settings": TABLES,
+    }
+    for name, table in tables.items():
         if name in metafunc.fixturenames:
             entries = [(entry, number) for entry in table for number in range(len(EXAMPLES.get(entry, [{}])))]
             metafunc.parametrize(name, entries, indirect=True, ids=[f"{entry}-{number}" for entry, number in entries])
@@ -130,8 +158,8 @@ def settings(request: pytest.FixtureRequest, examples: Callable[[str], list[Any]
     return examples(entry)[number]
 
 
-agent = family = settings
-"""The same, of the one table or the other."""
+agent = planner = policy = family = settings
+"""The same, of one of the tables."""
 
 
 @pytest.fixture
@@ -143,6 +171,9 @@ def meetings(agent: AgentSettings, conditions: Callable[..., Any]) -> list[World
         for maps, fields in ARENAS[kind]:
             under = conditions(steps=40, distance=(5, 30), **fields)
             found += [maps.sample(np.random.default_rng(seed), seed, under) for seed in range(EPISODES)]
+    if getattr(agent, "reading", "") == "map":  # made for maps of one size
+        found = [world for world in found if world.task.extent == agent.size]
+    assert len(found) > 1
     return found
 
 

@@ -68,9 +68,9 @@ def test_observations_are_left_alone(agent: AgentSettings, meetings: list[World]
         assert not observation.view.flags.writeable
 
 
-def test_a_goal_next_door_is_reached(agent: AgentSettings, draw: Callable[..., World], play: Play) -> None:
-    """In a map of two cells every agent takes the one move that there is."""
-    assert [decision.action for decision in play(draw("SG"), agent, 0)] == [Move.RIGHT]
-    assert [decision.action for decision in play(draw("S\nG"), agent, 0)] == [Move.DOWN]
-    assert [decision.action for decision in play(draw("GS"), agent, 0)] == [Move.LEFT]
-    assert [decision.action for decision in play(draw("G\nS"), agent, 0)] == [Move.UP]
+def test_a_goal_next_door_is_reached(planner: AgentSettings, draw: Callable[..., World], play: Play) -> None:
+    """In a map of two cells every planner takes the one move that there is."""
+    assert [decision.action for decision in play(draw("SG"), planner, 0)] == [Move.RIGHT]
+    assert [decision.action for decision in play(draw("S\nG"), planner, 0)] == [Move.DOWN]
+    assert [decision.action for decision in play(draw("GS"), planner, 0)] == [Move.LEFT]
+    assert [decision.action for decision in play(draw("G\nS"), planner, 0)] == [Move.UP]

@@ -5,12 +5,15 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+import torch
 
 from worlds.settings import Settings
 from worlds.types import AgentSettings, Task, World
 
-NOT_CARRIED = (Settings, Task, np.random.Generator, type)
-"""What an agent was given when it started, and its classes."""
+NOT_CARRIED = (Settings, Task, np.random.Generator, torch.nn.Module, type)
+"""What an agent was given when it started, the weights it shares with all others of its settings, and its classes."""
+
+ARRAYS = (np.ndarray, torch.Tensor)
 
 CONTAINERS = (list, tuple, dict, set, frozenset, deque)
 
@@ -40,14 +43,14 @@ def parts(thing: Any) -> list[Any]:
 
 
 def test_memory_is_what_is_held(agent: AgentSettings, meetings: list[World], play: Callable[..., Any]) -> None:
-    """After every decision `memory_bytes` is the sum of all arrays held, and no container grows beside them."""
+    """After every decision `memory_bytes` is the sum of all arrays and tensors held, and no container grows beside them."""
     for seed, world in enumerate(meetings):
         sizes = set()
         for decision in play(world, agent, seed):
             everything = list(held(decision.agent))
-            arrays = [thing for thing in everything if isinstance(thing, np.ndarray)]
+            arrays = [thing for thing in everything if isinstance(thing, ARRAYS)]
             assert decision.memory_bytes == sum(array.nbytes for array in arrays)
-            assert not any(array.dtype.hasobject for array in arrays)
+            assert not any(isinstance(array, np.ndarray) and array.dtype.hasobject for array in arrays)
             sizes.add(sum(len(thing) for thing in everything if isinstance(thing, CONTAINERS)))
         assert len(sizes) == 1
 

@@ -20,10 +20,12 @@ from bench.playing.store import read
 from bench.reading.scenario import Scenario
 
 RUN = """
+import signal
 import sys
 from pathlib import Path
 from bench.playing.runner import run
 from bench.reading.scenario import read_scenario
+signal.signal(signal.SIGINT, signal.default_int_handler)  # the background jobs of a shell are deaf to it
 path = Path(sys.argv[1])
 try:
     run(read_scenario(path.read_text(), path), Path(sys.argv[2]), 2, lambda progress: None)
