@@ -43,7 +43,7 @@ def parts(thing: Any) -> list[Any]:
 
 
 def test_memory_is_what_is_held(agent: AgentSettings, meetings: list[World], play: Callable[..., Any]) -> None:
-    """After every decision `memory_bytes` is the sum of all arrays and tensors held, and no container grows beside them."""
+    """After every decision `memory_bytes` is the sum of all arrays and tensors held; no container grows beside them."""
     for seed, world in enumerate(meetings):
         sizes = set()
         for decision in play(world, agent, seed):

@@ -1,0 +1,23 @@
+"""What the tests of policies share."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from learned import checkpoint
+from learned.policy import Policy, weighted
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Callable[[Policy, str], str]:
+    """Writes the weights of a policy as a checkpoint of a name; returns its file."""
+
+    def save(policy: Policy, name: str) -> str:
+        place = tmp_path / f"{name}.safetensors"
+        settings: dict[str, Any] = policy.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
+        checkpoint.write(place, type(policy).__name__, settings, weighted(policy).state_dict(), {"batches": 3})
+        return str(place)
+
+    return save

@@ -1,0 +1,124 @@
+"""Weights on the disk: what was written is read back, and whatever is wrong with a file is one sentence."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+from safetensors.torch import save_file
+
+from learned import checkpoint
+from learned.checkpoint import place_of, read_card, read_weights
+from learned.policy import weighted
+from learned.vin import Vin
+from worlds.files import sha256
+from worlds.mistake import Mistake, Unavailable
+
+VIN = Vin(checkpoint="none", seed=3)
+
+
+@pytest.fixture
+def place(save: Callable[..., str]) -> Path:
+    """A checkpoint of a small network."""
+    return Path(save(VIN, "small"))
+
+
+def change(card: Path, **fields: Any) -> None:
+    """Overwrite fields of a card."""
+    card.write_text(json.dumps({**json.loads(card.read_text()), **fields}))
+
+
+def wrong(place: Path) -> str:
+    """What is wrong with a checkpoint."""
+    with pytest.raises(Mistake) as caught:
+        read_weights(place, read_card(place), VIN.network())
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_what_was_written_is_read(place: Path) -> None:
+    """All tensors, bit for bit, and the card."""
+    network = VIN.network()
+    card = read_card(place)
+    read_weights(place, card, network)
+    for name, tensor in weighted(VIN).state_dict().items():
+        assert torch.equal(network.state_dict()[name], tensor)
+    assert (card.network, card.training) == ("Vin", {"batches": 3})
+    assert card.settings["iterations"] == VIN.iterations
+    assert sorted(file.name for file in place.parent.iterdir()) == ["small.json", "small.safetensors"]
+
+
+@pytest.mark.parametrize("cut", [1, 100, 10_000])
+def test_truncated(place: Path, cut: int) -> None:
+    """A file that lost its end."""
+    place.write_bytes(place.read_bytes()[:-cut])
+    assert (
+        wrong(place) == "a checkpoint that is whole (small.safetensors is not the file that its card was written for)"
+    )
+
+
+def test_corrupted(place: Path) -> None:
+    """A file with one changed bit, which its format would not notice."""
+    contents = bytearray(place.read_bytes())
+    contents[-1] ^= 1
+    place.write_bytes(contents)
+    assert (
+        wrong(place) == "a checkpoint that is whole (small.safetensors is not the file that its card was written for)"
+    )
+
+
+def test_not_weights(place: Path) -> None:
+    """A file of another format whose card agrees with it."""
+    place.write_bytes(b'\x08\0\0\0\0\0\0\0{"a": 1}')
+    change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
+    assert wrong(place).startswith("a file of weights (small.safetensors: ")
+
+
+def test_other_shapes(place: Path) -> None:
+    """Weights of other shapes than the card's settings make."""
+    weights = dict(weighted(VIN).state_dict(), **{"output.weight": torch.zeros(4, 5)})
+    save_file(weights, place)
+    change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
+    assert wrong(place) == (
+        "a checkpoint that fits its card (small.safetensors: output.weight is [4, 5] there, [4, 4] here)"
+    )
+
+
+def test_missing_and_foreign_weights(place: Path) -> None:
+    """A tensor too few, and one too many."""
+    weights = weighted(VIN).state_dict()
+    weights["output.bias"] = torch.zeros(4)
+    save_file(weights, place)
+    change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
+    assert wrong(place).endswith("(small.safetensors: output.bias is [4] there, missing here)")
+    del weights["output.bias"], weights["output.weight"]
+    save_file(weights, place)
+    change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
+    assert wrong(place).endswith("(small.safetensors: output.weight is missing there, [4, 4] here)")
+
+
+def test_cards_that_cannot_be_read(place: Path) -> None:
+    """No card, no JSON, and a card that lacks something."""
+    card = place.with_suffix(".json")
+    card.write_text("{")
+    assert wrong(place).startswith("a checkpoint whose card can be read (small.json: Invalid JSON: ")
+    card.write_text("{}")
+    assert wrong(place) == "a checkpoint whose card can be read (small.json: network: Field required)"
+    card.unlink()
+    assert wrong(place) == "a checkpoint with its card (there is no small.json beside small.safetensors)"
+
+
+def test_files_that_are_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is named must exist; a shipped name that does not yet is a reason to skip, with the nearest name."""
+    with pytest.raises(Mistake) as caught:
+        place_of("no.safetensors", tmp_path)
+    assert str(caught.value) == f"an existing file (looked for {tmp_path}/no.safetensors)"
+    monkeypatch.setattr(checkpoint, "SHIPPED", tmp_path)
+    with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet$"):
+        place_of("macn-gird")
+    (tmp_path / "macn-grid.safetensors").touch()
+    with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet; did you mean macn-grid\?$"):
+        place_of("macn-gird")
+    assert place_of("macn-grid") == tmp_path / "macn-grid.safetensors"
