@@ -8,13 +8,16 @@ from pkgutil import resolve_name
 
 import pytest
 
+import learned
+import planners
 import worlds
-from planners import EXTRAS, PLANNERS
+from learned import LEARNED
+from planners import PLANNERS
 from worlds import FAMILIES, KINDS
 
 HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib"}
 
-TARGETS = {**PLANNERS, **FAMILIES, **KINDS}
+TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **KINDS}
 
 
 def loaded(code: str) -> set[str]:
@@ -53,7 +56,7 @@ def test_the_command_line_loads_nothing_heavy(code: str) -> None:
 def test_tables_load_none_of_their_entries() -> None:
     """Importing the packages with the tables imports no module that the tables name."""
     modules = {target.partition(":")[0] for target in TARGETS.values()}
-    assert not modules & loaded("import worlds, planners")
+    assert not modules & loaded("import worlds, planners, learned")
 
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
@@ -64,6 +67,7 @@ def test_every_target_is_a_class(target: str) -> None:
     assert f"{found.__module__}:{found.__name__}" == target
 
 
-def test_extras_belong_to_planners() -> None:
-    """An extra is named for a planner that there is."""
-    assert set(EXTRAS) <= set(PLANNERS)
+def test_extras_belong_to_agents() -> None:
+    """An extra is named for a planner or a policy that there is."""
+    assert set(planners.EXTRAS) <= set(PLANNERS)
+    assert set(learned.EXTRAS) <= set(LEARNED)

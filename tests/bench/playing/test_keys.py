@@ -124,7 +124,7 @@ def test_a_users_map_family_counts_by_its_source(tmp_path: Path) -> None:
 
 def test_sources_are_in_the_keys(tmp_path: Path) -> None:
     """Those of the worlds and of the loop are in the one, those of the planners in the other, no report in any."""
-    for package in ("worlds", "planners", "bench"):
+    for package in ("worlds", "planners", "learned", "bench"):
         shutil.copytree(Path(__import__(package).__path__[0]), tmp_path / package)
 
     def both() -> list[str]:

@@ -12,6 +12,7 @@ import pytest
 from bench.reading.plugins import load, target
 from bench.reading.scenario import Scenario, ScenarioError, read_scenario
 from bench.reading.tables import AGENT, agents, families, first_sentence, registered
+from learned import LEARNED
 from planners import PLANNERS
 from worlds import FAMILIES
 
@@ -293,7 +294,7 @@ def test_an_agent_whose_package_is_missing_is_skipped_with_its_reason(read: Read
 
 def test_a_missing_extra_is_named_with_the_way_to_get_it(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
     """As for a planner that stands on a package of an extra, here one of a file."""
-    monkeypatch.setitem(PLANNERS, "lamp", "fog_shop:Lamp")
+    monkeypatch.setitem(AGENT.shipped, "lamp", "fog_shop:Lamp")
     monkeypatch.setattr("bench.reading.plugins.EXTRAS", {"lamp": "light"})
     Path("fog_shop.py").write_text("import fog_lamp\n")
     monkeypatch.syspath_prepend(Path.cwd())
@@ -345,14 +346,14 @@ def test_entry_points_of_other_packages(
     request.addfinalizer(registered.cache_clear)
     assert families() == {**FAMILIES, "tubes": "worlds.tunnel:Tunnel"}
     walker, net = "planners.random_walk:RandomWalk", "planners.memoryless:Memoryless"
-    assert agents() == {**PLANNERS, "walker": walker, "net": net}
+    assert agents() == {**PLANNERS, **LEARNED, "walker": walker, "net": net}
     assert [agent.target for agent in read("walker, net").variants[0].agents] == [PLANNERS["astar"], walker, net]
     assert line(read, "walkr").endswith("Did you mean walker?")
 
 
 def test_first_sentences_are_told_without_an_import(tmp_path: Path) -> None:
     """What cannot be found has none."""
-    for name in [*FAMILIES.values(), *PLANNERS.values()]:
+    for name in [*FAMILIES.values(), *PLANNERS.values(), *LEARNED.values()]:
         module, _, class_name = name.rpartition(":")
         __import__(module)
         assert first_sentence(name) == getattr(sys.modules[module], class_name).__doc__.partition("\n")[0]

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 
+import learned
 import planners
 import worlds
 from bench.reading.scenario import ScenarioError, read_scenario
 from worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
-AGENTS = f"one of {', '.join(planners.PLANNERS)}, or a class as file.py:Class or module:Class"
+AGENTS = f"one of {', '.join([*planners.PLANNERS, *learned.LEARNED])}, or a class as file.py:Class or module:Class"
 
 KEYS = "name, about, maps, sensor, rules, tasks, budget, variants, agents, reference, episodes, seed, published"
 PUBLISHED = "source, success, path_ratio, reference_ratio, test_error"

@@ -8,6 +8,7 @@ import yaml
 
 from bench.reading.schema import schema
 from bench.shipped import find
+from learned import LEARNED
 from planners import PLANNERS
 from worlds import FAMILIES
 
@@ -104,7 +105,7 @@ def test_parts_and_plug_ins_of_users_fit(text: str) -> None:
 def test_every_plug_in_has_its_settings_with_defaults_and_words() -> None:
     """As its class says them; the label is one key more."""
     assert set(SCHEMA["$defs"]["Maps"]["properties"]) == set(FAMILIES)
-    assert set(SCHEMA["$defs"]["Agent"]["properties"]) <= set(PLANNERS)
+    assert set(SCHEMA["$defs"]["Agent"]["properties"]) <= {*PLANNERS, *LEARNED}
     replan = SCHEMA["$defs"]["AStar"]["properties"]["replan"]
     assert (replan["default"], replan["enum"]) == ("cut", ["cut", "change"])
     assert replan["description"].startswith("Plan again when the path is cut")

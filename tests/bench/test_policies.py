@@ -1,0 +1,144 @@
+"""Learned policies in scenarios: played end to end, skipped without a checkpoint, refused with a broken one."""
+
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from bench.playing.episode import SCHEMA, TIMINGS
+from bench.playing.replay import End, retrace, verify
+from bench.playing.runner import run
+from bench.playing.store import read
+from bench.reading.scenario import ScenarioError, read_scenario
+from learned import checkpoint
+from learned.policy import weighted
+from learned.vin import Vin
+
+UNTRAINED = [
+    "astar",
+    {"macn": {"checkpoint": "none"}},
+    {"macn": {"checkpoint": "none", "memory": "lstm", "label": "MACN (LSTM)"}},
+    {"macn": {"checkpoint": "none", "memory": "feedforward", "label": "MACN (feed-forward)"}},
+    {"macn": {"checkpoint": "none", "reading": "map", "size": [6, 6], "label": "MACN on the map"}},
+    {"vin": {"checkpoint": "none"}},
+    {"vin": {"checkpoint": "none", "stitched": True, "reading": "map", "size": [6, 6], "label": "VIN (stitched)"}},
+    {"cnn_memory": {"checkpoint": "none"}},
+]
+"""Every network, with weights from its seed."""
+
+PAGE = """\
+name: small
+maps: {blobs: {size: 6, obstacles: [2, 6], obstacle_size: [1, 2]}}
+budget: {steps: 6}
+agents:
+  - astar
+  - AGENT
+episodes: 2
+"""
+
+
+def facts(scenario: Any, folder: Path, workers: int) -> pd.DataFrame:
+    """All that is recorded of a run but the timings."""
+    run(scenario, folder, workers, lambda progress: None)
+    rows = read(folder, scenario, [name for name in SCHEMA.names if name not in TIMINGS])
+    return rows.assign(actions=rows["actions"].map(tuple))
+
+
+def ended(steps: Generator[Any, None, End]) -> End:
+    """The end of a replay."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as stop:
+            return stop.value
+
+
+def test_workers_change_no_action(make: Any, tmp_path: Path) -> None:
+    """All networks play to the end, the same way in one, two and four worker processes; every episode replays."""
+    scenario = make(agents=UNTRAINED, rules={"collision": "blocked"})
+    one = facts(scenario, tmp_path / "one", 1)
+    assert len(one) == 2 * len(UNTRAINED) * 4
+    assert set(one["outcome"]) <= {"REACHED", "OUT_OF_STEPS"}
+    for workers in (2, 4):
+        pd.testing.assert_frame_equal(one, facts(scenario, tmp_path / f"{workers}", workers), check_exact=True)
+    variants = {variant.name: variant for variant in scenario.variants}
+    for row in one.to_dict("records"):
+        steps = retrace(variants[row["variant"]], row["episode"], row["actions"])
+        verify(row, ended(steps))
+
+
+def told(agent: str, folder: Path) -> str:
+    """The one mistake of a scenario with this agent, without the name of its file."""
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(PAGE.replace("AGENT", agent), folder / "s.yaml")
+    (line,) = caught.value.lines
+    return line.removeprefix(f"{folder}/s.yaml:")
+
+
+@pytest.fixture
+def saved(tmp_path: Path) -> Path:
+    """A checkpoint of a VIN beside the scenario."""
+    place, policy = tmp_path / "vin.safetensors", Vin(checkpoint="none", iterations=3)
+    settings = policy.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
+    checkpoint.write(place, "Vin", settings, weighted(policy).state_dict(), {})
+    return place
+
+
+def test_a_checkpoint_beside_the_scenario_is_found(saved: Path, tmp_path: Path) -> None:
+    """A relative file starts at the scenario's folder; what is not said is as in the training."""
+    scenario = read_scenario(PAGE.replace("AGENT", "vin: {checkpoint: vin.safetensors}"), tmp_path / "s.yaml")
+    settings: Any = scenario.variants[0].agents[1].settings
+    assert (settings.checkpoint, settings.iterations) == (str(saved), 3)
+
+
+def test_no_checkpoint_yet_is_a_reason_to_skip(tmp_path: Path) -> None:
+    """A shipped name without a file skips the agent; the others play."""
+    scenario = read_scenario(PAGE.replace("AGENT", "macn: {checkpoint: nobody}"), tmp_path / "s.yaml")
+    first, second = scenario.variants[0].agents
+    assert (first.skipped, second.settings) == ("", None)
+    assert second.skipped == "the checkpoint nobody does not exist yet"
+    rows = facts(scenario, tmp_path / "results", 1)
+    assert set(rows["agent"]) == {"astar"}
+
+
+def test_what_is_wrong_with_a_policy_is_told_at_its_place(
+    saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Missing, mismatched, truncated and corrupted checkpoints, heads and devices: one line each."""
+    assert told("vin", tmp_path) == "6:5  agents[1].vin.checkpoint: got nothing; expected text."
+    assert told("vin: {checkpoint: no.safetensors}", tmp_path) == (
+        "6:23  agents[1].vin.checkpoint: got no.safetensors; "
+        f"expected an existing file (looked for {tmp_path}/no.safetensors)."
+    )
+    assert told("macn: {checkpoint: vin.safetensors}", tmp_path) == (
+        "6:11  agents[1].macn: got {checkpoint: vin.safetensors}; expected a checkpoint of Macn (this is one of Vin)."
+    )
+    assert told("vin: {checkpoint: vin.safetensors, stitched: true}", tmp_path) == (
+        "6:10  agents[1].vin: got {checkpoint: vin.safetensors, stitched: true}; "
+        "expected stitched False, with which the checkpoint was trained."
+    )
+    assert told("macn: {checkpoint: none, reads: 0}", tmp_path) == (
+        "6:37  agents[1].macn.reads: got 0; expected a whole number of at least 1."
+    )
+    assert told("macn: {checkpoint: none, read: 2}", tmp_path).endswith("Did you mean reads?")
+    assert told("macn: {checkpoint: none, device: gpu}", tmp_path) == (
+        "6:38  agents[1].macn.device: got gpu; expected one of cpu, cuda. Did you mean cpu?"
+    )
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    assert told("macn: {checkpoint: none, device: cuda}", tmp_path) == (
+        "6:38  agents[1].macn.device: got cuda; expected cpu, for PyTorch finds no CUDA device here."
+    )
+    whole = saved.read_bytes()
+    for contents in (whole[:-1], whole[:-1] + bytes([whole[-1] ^ 1])):
+        saved.write_bytes(contents)
+        assert told("vin: {checkpoint: vin.safetensors}", tmp_path) == (
+            "6:10  agents[1].vin: got {checkpoint: vin.safetensors}; expected a checkpoint that is whole "
+            "(vin.safetensors is not the file that its card was written for)."
+        )
+    saved.with_suffix(".json").unlink()
+    assert told("vin: {checkpoint: vin.safetensors}", tmp_path) == (
+        "6:10  agents[1].vin: got {checkpoint: vin.safetensors}; "
+        "expected a checkpoint with its card (there is no vin.json beside vin.safetensors)."
+    )
