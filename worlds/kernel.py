@@ -1,15 +1,23 @@
 """`@kernel`: a loop compiled by Numba, kept on disk where a place can be written.
 
-Numba knows a cached kernel by its own file alone; an edit to a callee or to a constant of another file would go
-unnoticed. So the folder of the cache is named after all the sources that kernels can come from.
+Numba's own cache knows a kernel by its own file alone, so that an edit to a callee or to a constant of another file
+would go unnoticed; it raises where nothing can be written; and two processes that write at once may mix up its index.
+So each compiled form has a file of its own here, in a folder named after all the sources that kernels can come from.
 """
 
 import os
-from collections.abc import Callable
+import pickle
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from inspect import getfile
 from pathlib import Path
 from typing import Any, TypeVar, cast
+from uuid import uuid4
 
-from numba import config, njit
+import numba
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 
 from worlds.streams import digest
 
@@ -18,17 +26,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 HERE = Path(__file__).parent
 
 
-def _sources() -> str:
-    files = sorted(file for name in ("worlds", "planners", "learned") for file in HERE.with_name(name).glob("*.py"))
-    return digest(*(file.read_text("utf-8") for file in files))[:16]
-
-
-if "NUMBA_CACHE_DIR" not in os.environ:
-    config.CACHE_DIR = str(HERE / "__pycache__" / _sources())  # type: ignore[attr-defined]  # Numba makes it on import
-
-
 def kernel(function: F) -> F:
-    """Compile `function` on its first call; without any writable place for the cache, anew in each process."""
+    """Compile `function` on its first call; without any writable place to keep it, anew in each process."""
     return _compile(function)
 
 
@@ -42,8 +41,87 @@ def summing(function: F) -> F:
     return _compile(function, fastmath={"contract", "reassoc"})
 
 
+def kept(compiled: Callable[..., Any]) -> Path | None:
+    """The folder that a kernel was last read from or written to; None while that has not happened."""
+    return cast(Path | None, cast(Any, compiled).stats.cache_path)
+
+
 def _compile(function: F, **options: Any) -> F:
+    compiled = numba.njit(nogil=True, **options)(function)
+    with suppress(OSError):  # what was typed at a prompt has no file, and is not kept
+        compiled._cache = _Forms(function)  # noqa: SLF001  Numba has no other door
+    return cast(F, compiled)
+
+
+def _sources() -> str:
+    files = sorted(file for name in ("worlds", "planners", "learned") for file in HERE.with_name(name).glob("*.py"))
+    return digest(numba.__version__, sys.version, *(file.read_text("utf-8") for file in files))[:16]
+
+
+def _folders() -> Iterator[Path]:
+    """Where compiled kernels may be: the folder that is named for them, or else beside the sources, then at home."""
+    named = numba.config.CACHE_DIR  # type: ignore[attr-defined]  # Numba makes it on import
+    if named:
+        yield Path(named)
+        return
+    yield HERE / "__pycache__"
+    with suppress(RuntimeError):  # a user without a home
+        yield Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fogbench"
+
+
+FOLDERS = [folder / _sources() for folder in _folders()]
+
+
+_dumps: Any = dumps
+_rebuild: Any = CompileResult._rebuild  # noqa: SLF001  as Numba's own cache does it
+
+
+class _Forms:
+    """What Numba asks for the compiled forms of one kernel. Trouble with the disk only costs the time to compile."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        """Keep the forms of `function`.
+
+        Raises:
+            OSError: its file cannot be read.
+        """
+        self.name = f"{function.__module__}.{function.__qualname__}"
+        self.source = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
+        self.cache_path: Path | None = None
+
+    def load_overload(self, signature: object, context: Any) -> Any:
+        """The form of a signature, from the first folder that has it; None if none has."""
+        context.refresh()
+        for folder in FOLDERS:
+            with suppress(Exception):  # missing, forbidden, or broken
+                content = self._file(folder, signature, context.codegen()).read_bytes()
+                form = _rebuild(context, *pickle.loads(content))  # noqa: S301  written by `save_overload`
+                self.cache_path = folder
+                return form
+        return None
+
+    def save_overload(self, signature: object, form: Any) -> None:
+        """Write the form of a signature into the first folder that takes it, if one does."""
+        if form.library.has_dynamic_globals:  # addresses of this process
+            return
+        content = _dumps(form._reduce())  # noqa: SLF001  as Numba's own cache does it
+        for folder in FOLDERS:
+            with suppress(OSError):
+                _write(self._file(folder, signature, form.codegen), content)
+                self.cache_path = folder
+                return
+
+    def _file(self, folder: Path, signature: object, codegen: Any) -> Path:
+        return folder / f"{self.name}-{digest(self.source, signature, codegen.magic_tuple())[:16]}.nbc"
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Whole or not at all, whoever else writes it."""
+    draft = path.with_name(f"{path.name}.{uuid4().hex}")
+    path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        return cast(F, njit(cache=True, nogil=True, **options)(function))
-    except RuntimeError:  # Numba: "no locator available", nothing is writable
-        return cast(F, njit(nogil=True, **options)(function))
+        draft.write_bytes(content)
+        draft.replace(path)
+    except OSError:
+        draft.unlink(missing_ok=True)
+        raise

@@ -75,10 +75,10 @@ def world(layout: Layout, start: Cell, goal: Cell, conditions: GridConditions) -
     least, most = conditions.tasks.bounds(budget)
     if start == goal or manhattan(start, goal) > most or layout.blocked[start] or layout.blocked[goal]:
         return None
+    layout.blocked.setflags(write=False)
     optimum = int(distances(layout.blocked, start, goal)[goal])
     if optimum == FAR or not least <= optimum <= most:
         return None
-    layout.blocked.setflags(write=False)
     height, width = layout.blocked.shape
     task = Task("grid", goal, conditions.sensor, budget, (height, width))
     return GridWorld(layout.blocked, start, task, conditions.rules, optimum, layout.posts)

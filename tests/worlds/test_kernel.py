@@ -1,73 +1,213 @@
 """Kernels run wherever Python runs, kept on disk where that is possible."""
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 import worlds
 
-SCRIPT = """
-import numpy as np
-from worlds.belief import __file__, look
-from worlds.distances import distances
-print(__file__)
-print(look.stats.cache_path)
-print(look(np.eye(3, dtype=np.bool_), 0, 1, 1, True).tolist())
-print(distances(np.eye(3, dtype=np.bool_), (0, 1), (-1, -1))[1, 2])
+WITHOUT_RIGHTS = """
+import ctypes, os, struct
+
+READ, GROUP, USER, NOBODY = 1 << 2, 1 << 6, 1 << 7, 65534  # CAP_DAC_READ_SEARCH, CAP_SETGID, CAP_SETUID
+linux = ctypes.CDLL(None)
+
+def keep(rights):
+    header, sets = struct.pack("Ii", 0x20080522, 0), struct.pack("6I", rights, rights, 0, 0, 0, 0)
+    return linux.capset(header, sets) == 0
+
+if keep(READ | GROUP | USER):
+    linux.prctl(8, 1, 0, 0, 0)  # PR_SET_KEEPCAPS
+    os.setgroups([])
+    os.setresgid(NOBODY, NOBODY, NOBODY)
+    os.setresuid(NOBODY, NOBODY, NOBODY)
+    assert keep(READ)
+else:
+    assert keep(0)
+"""
+"""Turns its process into one of a user without rights.
+
+Root becomes nobody. It keeps the right to read, since the interpreter may lie in somebody's private folder, but can
+write only what is nobody's or everybody's. Where root itself lacks that right (in many containers) it stays who it is
+and gives up the power to overrule permissions; so does any other user, who has none: both are then held back by folders
+that are read-only for their owner.
 """
 
+FULL_DISK = """
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+"""
+"""Lets no file of the process, wherever it is, hold a single byte."""
 
-def run(folder: Path) -> list[str]:
-    """Run the script on a copy of `worlds`, in an environment whose home is a file that can hold nothing."""
-    home = folder / "home"
-    home.touch()
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "XDG_", "PYTHON"))}
-    environment = {**kept, "HOME": str(home), "PYTHONPATH": str(folder)}
-    command = [sys.executable, "-c", SCRIPT]
-    return subprocess.check_output(command, env=environment, cwd=folder, text=True).splitlines()
+SCRIPT = """
+import json
+import numpy as np
+from worlds.belief import __file__, hidden, look, passable
+from worlds.kernel import kept
+
+assert kept(look) is None
+view = look(np.eye(3, dtype=np.bool_), 0, 1, 1, True)
+stats = [kernel.stats for kernel in (look, hidden, passable)]
+print(json.dumps({
+    "file": __file__,
+    "folder": kept(look) and str(kept(look)),
+    "view": view.tolist(),
+    "compiled": sum(sum(each.cache_misses.values()) for each in stats),
+    "read": sum(sum(each.cache_hits.values()) for each in stats),
+}))
+"""
+
+VIEW = [[0, 2, 2], [2, 1, 1], [0, 2, 1]]
+COLD = {"view": VIEW, "compiled": 3, "read": 0}
+WARM = {"view": VIEW, "compiled": 0, "read": 1}
+"""A form that is read has its callees in it."""
 
 
-def copy(folder: Path) -> Path:
-    """Copy the sources of `worlds`, and nothing that was compiled from them."""
-    source = Path(worlds.__file__).parent
-    return shutil.copytree(source, folder / "worlds", ignore=shutil.ignore_patterns("__pycache__"))
+def start(folder: Path, script: str = SCRIPT, **environment: str) -> subprocess.Popen[str]:
+    """Start a script on the packages in a folder, without a home; any warning is an error."""
+    dropped = ("NUMBA_", "XDG_", "PYTHON", "HOME", "TMP", "TEMP")
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(dropped)}
+    return subprocess.Popen(
+        [sys.executable, "-W", "error", "-c", script],
+        env={**kept, "PYTHONPATH": str(folder), **environment},
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
-RESULT = ["[[0, 2, 2], [2, 1, 1], [0, 2, 1]]", "2"]
+def end(process: subprocess.Popen[str]) -> dict[str, Any]:
+    """What the script has told, on one line and with no other noise."""
+    out, err = process.communicate()
+    assert (process.returncode, err) == (0, "")
+    told: dict[str, Any] = json.loads(out)
+    return told
 
 
-def test_kernels_are_kept_beside_their_source(tmp_path: Path) -> None:
-    """Where that can be written, the compiled form is on disk after the first call."""
-    package = copy(tmp_path)
-    file, cache, *result = run(tmp_path)
-    assert file == str(package / "belief.py")
-    assert Path(cache).is_relative_to(package / "__pycache__")
-    assert result == RESULT
-    assert list(Path(cache).glob("belief.look-*.nbc"))
+def told(result: dict[str, Any]) -> dict[str, Any]:
+    """The part that is the same wherever the packages and the kernels are."""
+    return {name: result[name] for name in COLD}
 
 
-def test_an_edit_of_another_file_is_noticed(tmp_path: Path) -> None:
+def forms(folder: Path) -> set[str]:
+    """The files of compiled kernels below a folder."""
+    return {path.name.partition("-")[0] for path in folder.rglob("*.nbc*") if path.is_file()}
+
+
+FORMS = {"worlds.belief.look", "worlds.belief.hidden", "worlds.belief.passable"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Iterator[Path]:
+    """A folder with the sources of `worlds`, and nothing that was compiled from them."""
+    place = tmp_path / "install"
+    shutil.copytree(Path(worlds.__file__).parent, place / "worlds", ignore=shutil.ignore_patterns("__pycache__"))
+    yield place
+    for path in [place, *place.rglob("*/")]:
+        path.chmod(0o755)
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    """An empty folder in which everybody may write."""
+    place = tmp_path / "home"
+    place.mkdir()
+    place.chmod(0o777)
+    return place
+
+
+def seal(folder: Path) -> None:
+    """Make a folder read-only, for its owner too."""
+    for path in [folder, *folder.rglob("*/")]:
+        path.chmod(0o555)
+
+
+def test_kernels_are_kept_beside_their_source(folder: Path) -> None:
+    """Where that can be written, the compiled forms are on disk after the first call, and read by the next process."""
+    result = end(start(folder))
+    assert result["file"] == str(folder / "worlds" / "belief.py")
+    assert Path(result["folder"]).parent == folder / "worlds" / "__pycache__"
+    assert told(result) == COLD
+    assert forms(Path(result["folder"])) == FORMS
+    assert told(end(start(folder))) == WARM
+
+
+def test_an_edit_of_another_file_is_noticed(folder: Path) -> None:
     """A constant that a kernel takes from elsewhere is compiled into it, and compiled anew when it changes."""
-    package = copy(tmp_path)
-    before = run(tmp_path)
-    types = package / "types.py"
+    before = end(start(folder))
+    types = folder / "worlds" / "types.py"
     types.write_text(types.read_text().replace("UNKNOWN, FREE, BLOCKED = 0, 1, 2", "UNKNOWN, FREE, BLOCKED = 0, 1, 3"))
-    after = run(tmp_path)
-    assert before[1] != after[1]
-    assert after[2] == RESULT[0].replace("2", "3")
+    after = end(start(folder))
+    assert before["folder"] != after["folder"]
+    assert after["view"] == [[0, 3, 3], [3, 1, 1], [0, 3, 1]]
 
 
-def test_kernels_run_where_nothing_can_be_written(tmp_path: Path) -> None:
-    """Without any place for the cache, a kernel is compiled in its process, and gives the same.
+@pytest.mark.parametrize("variables", [{}, {"HOME": "/proc"}, {"NUMBA_CACHE_DIR": "/proc/kernels"}], ids=str)
+def test_a_user_without_rights_gets_the_same_where_nothing_can_be_written(
+    folder: Path, variables: dict[str, str]
+) -> None:
+    """In a read-only installation, with no home or a useless one and on a full disk, it only takes the compilation."""
+    seal(folder)
+    before = set(folder.rglob("*"))
+    result = end(start(folder, WITHOUT_RIGHTS + FULL_DISK + SCRIPT, **variables))
+    assert (result["folder"], told(result)) == (None, COLD)
+    assert set(folder.rglob("*")) == before
 
-    A file stands where the cache's folder would have to be, and another where the home would be: not even root can
-    make a folder there.
-    """
-    package = copy(tmp_path)
-    (package / "__pycache__").touch()
-    file, cache, *result = run(tmp_path)
-    assert (file, cache) == (str(package / "belief.py"), "None")
-    assert result == RESULT
-    assert (package / "__pycache__").is_file()
+
+def test_a_user_without_rights_cannot_write_into_the_installation(folder: Path) -> None:
+    """The script that takes the rights away does take them away."""
+    seal(folder)
+    process = start(folder, WITHOUT_RIGHTS + "open('worlds/mine', 'w')")
+    assert "PermissionError: [Errno 13] Permission denied: 'worlds/mine'" in process.communicate()[1]
+
+
+@pytest.mark.parametrize(
+    ("variable", "below"), [("HOME", ".cache/fogbench"), ("XDG_CACHE_HOME", "fogbench"), ("NUMBA_CACHE_DIR", ".")]
+)
+def test_a_user_without_rights_keeps_kernels_at_home(folder: Path, home: Path, variable: str, below: str) -> None:
+    """Where the installation is read-only, the second process compiles nothing, since the user's own place has it."""
+    seal(folder)
+    for expected in (COLD, WARM):
+        result = end(start(folder, WITHOUT_RIGHTS + SCRIPT, **{variable: str(home)}))
+        assert (Path(result["folder"]).parent, told(result)) == (home / below, expected)
+    assert forms(home) == FORMS
+    assert not forms(folder)
+
+
+def test_a_user_without_rights_reads_what_the_owner_has_compiled(folder: Path) -> None:
+    """An installation that was warm before it became read-only is warm for everybody."""
+    assert told(end(start(folder))) == COLD
+    seal(folder)
+    assert told(end(start(folder, WITHOUT_RIGHTS + SCRIPT))) == WARM
+
+
+def test_broken_files_are_replaced(folder: Path) -> None:
+    """A file that was cut short costs one more compilation, and is whole again afterwards."""
+    place = Path(end(start(folder))["folder"])
+    for path in place.glob("*.nbc"):
+        path.write_bytes(path.read_bytes()[:100])
+    assert [told(end(start(folder))) for _ in range(2)] == [COLD, WARM]
+
+
+def test_processes_may_compile_at_once(folder: Path) -> None:
+    """Two first processes side by side do not disturb each other, and leave whole files and nothing else."""
+    for process in [start(folder) for _ in range(2)]:
+        assert end(process)["view"] == VIEW
+    result = end(start(folder))
+    assert told(result) == WARM
+    assert forms(folder) == FORMS
+    assert len(list(Path(result["folder"]).iterdir())) == len(FORMS)
+
+
+def test_a_kernel_without_a_file_is_compiled() -> None:
+    """What is typed at a prompt can be a kernel too."""
+    script = "from worlds.kernel import kernel\ntwice = kernel(lambda x: 2 * x)\nprint(twice(21))"
+    assert start(Path(worlds.__file__).parents[1], script).communicate() == ("42\n", "")
