@@ -79,14 +79,16 @@ _rebuild: Any = CompileResult._rebuild  # noqa: SLF001  as Numba's own cache doe
 class _Forms:
     """What Numba asks for the compiled forms of one kernel. Trouble with the disk only costs the time to compile."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Any) -> None:
         """Keep the forms of `function`.
 
         Raises:
             OSError: its file cannot be read.
         """
         self.name = f"{function.__module__}.{function.__qualname__}"
-        self.source = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
+        text = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
+        self.source = digest(text, *function.__code__.co_positions())  # many lambdas have one name
+        self.fixed = function.__closure__ is None
         self.cache_path: Path | None = None
 
     def load_overload(self, signature: object, context: Any) -> Any:
@@ -102,7 +104,7 @@ class _Forms:
 
     def save_overload(self, signature: object, form: Any) -> None:
         """Write the form of a signature into the first folder that takes it, if one does."""
-        if form.library.has_dynamic_globals:  # addresses of this process
+        if form.library.has_dynamic_globals or not self.fixed:  # it holds what belongs to this process
             return
         content = _dumps(form._reduce())  # noqa: SLF001  as Numba's own cache does it
         for folder in FOLDERS:

@@ -150,6 +150,35 @@ def test_an_edit_of_another_file_is_noticed(folder: Path) -> None:
     assert after["view"] == [[0, 3, 3], [3, 1, 1], [0, 3, 1]]
 
 
+def play(folder: Path, name: str, lines: list[str]) -> str:
+    """What a file of a user's own prints."""
+    (folder / f"{name}.py").write_text("\n".join(["from worlds.kernel import kernel", *lines]))
+    process = start(folder, f"import {name}")
+    out, err = process.communicate()
+    assert (process.returncode, err) == (0, "")
+    return out.strip()
+
+
+def test_kernels_of_a_users_file_are_kept(folder: Path) -> None:
+    """Each by itself, also where they share name and line; an edit of a callee is noticed."""
+    lines = [
+        "add, take = kernel(lambda x: x + 1), kernel(lambda x: x - 1)",
+        "twice = kernel(lambda x: 2 * add(x))",
+        "print(twice(20), take(20), add(20), *[sum(each.stats.cache_hits.values()) for each in (twice, take, add)])",
+    ]
+    assert [play(folder, "mine", lines) for _ in range(2)] == ["42 19 21 0 0 0", "42 19 21 1 1 1"]
+    assert play(folder, "mine", [lines[0].replace("+ 1", "+ 2"), *lines[1:]]) == "44 19 22 0 0 0"
+
+
+def test_what_belongs_to_a_process_is_not_kept(folder: Path) -> None:
+    """A kernel that holds an address, or a value that it was made with, is compiled in each process."""
+    address = ["from ctypes import CDLL, c_int", "f = CDLL(None).abs", "f.argtypes, f.restype = [c_int], c_int"]
+    assert play(folder, "distance", [*address, "print(kernel(lambda a, b: f(a - b))(1, 3))"]) == "2"
+    made = ["def plus(n):", "    return kernel(lambda x: x + n)", "print(plus(1)(1), plus(2)(1))"]
+    assert play(folder, "sums", made) == "2 3"
+    assert not forms(folder)
+
+
 @pytest.mark.parametrize("variables", [{}, {"HOME": "/proc"}, {"NUMBA_CACHE_DIR": "/proc/kernels"}], ids=str)
 def test_a_user_without_rights_gets_the_same_where_nothing_can_be_written(
     folder: Path, variables: dict[str, str]
