@@ -60,17 +60,17 @@ def _sources() -> str:
 
 def _folders() -> Iterator[Path]:
     """Where compiled kernels may be: the folder that is named for them, or else beside the sources, then at home."""
+    sources = _sources()
     named = numba.config.CACHE_DIR  # type: ignore[attr-defined]  # Numba makes it on import
     if named:
-        yield Path(named)
+        yield Path(named, sources)
         return
-    yield HERE / "__pycache__"
+    yield HERE / "__pycache__" / sources
     with suppress(RuntimeError):  # a user without a home
-        yield Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fogbench"
+        yield Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fogbench" / sources
 
 
-FOLDERS = [folder / _sources() for folder in _folders()]
-
+FOLDERS = tuple(_folders())
 
 _dumps: Any = dumps
 _rebuild: Any = CompileResult._rebuild  # noqa: SLF001  as Numba's own cache does it
