@@ -111,7 +111,7 @@ def replay(
 
 @app.command()
 def doctor() -> None:
-    """Say what is installed, which extras are missing and how to get them, the CPUs, and how fast this machine is."""
+    """Compile all kernels; say what is installed, what is missing and how to get it, and how fast this machine is."""
     from bench.doctor import examine
 
     examine()

@@ -1,17 +1,89 @@
-"""What is said of an installation."""
+"""What is said of an installation, and what it leaves behind."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
+import bench
 from bench.doctor import examine
+from planners import PLANNERS
+
+PLAYED = """
+import json, sys
+import torch
+from numba.core.registry import CPUDispatcher
+from bench.playing.loop import play
+from bench.reading.scenario import read_scenario
+from bench.shipped import find
+from learned.value_iteration import ValueIteration
+
+outcomes = set()
+for path in find(None):
+    scenario = read_scenario(path.read_text("utf-8"), path)
+    for variant in scenario.variants[:1]:
+        for entry in variant.agents:
+            outcomes.add((entry.target, play(scenario, variant, entry, 0, 1).outcome))
+
+module = ValueIteration(2, 5)
+module(torch.rand(3, 2, 4, 4))[0].sum().backward()
+module.requires_grad_(False)(torch.rand(1, 2, 6, 5))
+
+ours = "worlds", "planners", "learned", "bench"
+modules = [module for name, module in sys.modules.items() if name.startswith(ours)]
+kernels = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
+print(json.dumps({
+    "played": sorted({target for target, _ in outcomes}),
+    "crashed": sorted({target for target, outcome in outcomes if outcome == "CRASHED"}),
+    "compiled": sorted({f"{each.__module__}.{each.__name__}" for each in kernels if each.stats.cache_misses}),
+    "read from": sorted({each.__module__ for each in kernels if each.stats.cache_hits}),
+}))
+"""
+"""Plays an episode of each agent in each shipped scenario of drawn maps, learns a little, and says what it compiled."""
+
+
+def rows(printed: str) -> list[list[str]]:
+    """The cells of printed tables."""
+    return [[cell.strip() for cell in row.split("│")[1:-1]] for row in printed.splitlines()]
+
+
+def run(script: str, cache: Path) -> str:
+    """What a script prints in a process of its own, which keeps its kernels in `cache`; any warning is an error."""
+    packages = str(Path(bench.__file__).parents[1])
+    environment = {name: value for name, value in os.environ.items() if name != "FOGBENCH_MAPS"}
+    environment |= {"PYTHONPATH": packages, "NUMBA_CACHE_DIR": str(cache), "COLUMNS": "240"}
+    return subprocess.check_output([sys.executable, "-W", "error", "-c", script], env=environment, text=True)
 
 
 def test_what_is_missing_is_told_with_the_way_to_get_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The project is installed from its checkout."""
+    """The project is installed from its checkout; without extras, or a place to write, all else is still examined."""
     monkeypatch.setenv("COLUMNS", "160")
     monkeypatch.setattr("bench.doctor._requirements", lambda: ["fog-lamp", 'fog-horn; extra == "noise"'])
+    for package in ("torch", "ompl"):
+        monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.delitem(sys.modules, "planners.rrt_star", raising=False)
+    monkeypatch.setattr("bench.doctor.kept", lambda _: None)
     examine()
-    rows = [[cell.strip() for cell in row.split("│")] for row in capsys.readouterr().out.splitlines()]
-    assert ["", "fog-lamp", "missing: pip install .", "everything", ""] in rows
-    assert ["", "fog-horn", 'missing: pip install ".[noise]"', "the extra noise", ""] in rows
+    told = rows(capsys.readouterr().out)
+    assert ["fog-lamp", "missing: pip install .", "everything"] in told
+    assert ["fog-horn", 'missing: pip install ".[noise]"', "the extra noise"] in told
+    assert ["kernels", "compiled by each process for itself: no place can be written"] in told
+    assert not [row for row in told if row[:1] == ["value iteration, 128 maps of 16x16, 20 times"]]
+
+
+def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
+    """Every kernel that shipped agents and learning need is read from where it was said to be kept."""
+    told = dict(row for row in rows(run("from bench.doctor import examine\nexamine()", tmp_path)) if len(row) == 2)
+    place = Path(told["kernels"].removeprefix("compiled, kept in "))
+    assert place.parent == tmp_path
+    assert list(place.glob("planners.astar.search-*.nbc"))
+    assert "with gradients" in told["value iteration, 128 maps of 16x16, 20 times"]
+    found = json.loads(run(PLAYED, tmp_path))
+    assert found["played"] == sorted(PLANNERS.values())
+    assert (found["crashed"], found["compiled"]) == ([], [])
+    assert {"planners.incremental", "planners.segment", "learned.value_iteration_kernels"} <= set(found["read from"])
