@@ -17,7 +17,8 @@ from threadpoolctl import threadpool_info
 
 from bench.playing.loop import play
 from bench.reading.scenario import read_scenario
-from bench.reading.tables import AGENT
+from learned import LEARNED
+from planners import PLANNERS
 from planners.astar import search
 from worlds.kernel import kept
 
@@ -29,7 +30,9 @@ about: Every agent that ships with the project plays once.
 maps: {{blobs: {{size: 12, obstacles: [8, 8], obstacle_size: [1, 3]}}}}
 sensor: {{radius: 2, occlusion: true}}
 budget: {{steps: 40}}
-agents: [{", ".join(AGENT.shipped)}]
+agents:
+  [{", ".join([*PLANNERS, *(f"{name}: {{checkpoint: none}}" for name in LEARNED)])},
+   vin: {{checkpoint: none, stitched: true, label: stitched}}]
 episodes: 1
 """
 
@@ -118,10 +121,13 @@ def _learned() -> dict[str, str]:
         import torch  # noqa: PLC0415  an extra
     except ModuleNotFoundError:
         return {}
-    from learned.value_iteration import ValueIteration  # noqa: PLC0415  it needs the extra
+    from learned.dnc import DNC  # noqa: PLC0415  it needs the extra
+    from learned.dnc_access import Heads  # noqa: PLC0415
+    from learned.value_iteration import ValueIteration  # noqa: PLC0415
 
     return {
         "value iteration, 128 maps of 16x16, 20 times": _both_ways(ValueIteration(2, 20), torch.rand(128, 2, 16, 16)),
+        "a DNC, 64 samples, 10 steps": _both_ways(DNC(256, 4, Heads()), torch.rand(64, 10, 256)),
     }
 
 

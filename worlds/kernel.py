@@ -106,10 +106,9 @@ class _Forms:
         """Write the form of a signature into the first folder that takes it, if one does."""
         if form.library.has_dynamic_globals or not self.fixed:  # it holds what belongs to this process
             return
-        content = _dumps(form._reduce())  # noqa: SLF001  as Numba's own cache does it
         for folder in FOLDERS:
-            with suppress(OSError):
-                _write(self._file(folder, signature, form.codegen), content)
+            with suppress(Exception):  # forbidden, full, or another Numba than was thought of
+                _write(self._file(folder, signature, form.codegen), _dumps(form._reduce()))  # noqa: SLF001
                 self.cache_path = folder
                 return
 

@@ -10,20 +10,27 @@ import pytest
 
 import bench
 from bench.doctor import examine
+from learned import LEARNED
 from planners import PLANNERS
 
 PLAYED = """
 import json, sys
+from pathlib import Path
 import torch
 from numba.core.registry import CPUDispatcher
 from bench.playing.loop import play
 from bench.reading.scenario import read_scenario
 from bench.shipped import find
+from learned.dnc import DNC
+from learned.dnc_access import Heads
 from learned.value_iteration import ValueIteration
 
 outcomes = set()
-for path in find(None):
-    scenario = read_scenario(path.read_text("utf-8"), path)
+networks = "{macn: {checkpoint: none}}, {vin: {checkpoint: none, stitched: true}}, {cnn_memory: {checkpoint: none}}"
+text = "name: networks\\nmaps: {maze: {size: 21}}\\nbudget: {steps: 9}\\nepisodes: 1\\nagents: [" + networks + "]"
+texts = [(text, Path("networks.yaml")), *((path.read_text("utf-8"), path) for path in find(None))]
+for text, path in texts:
+    scenario = read_scenario(text, path)
     for variant in scenario.variants[:1]:
         for entry in variant.agents:
             outcomes.add((entry.target, play(scenario, variant, entry, 0, 1).outcome))
@@ -31,6 +38,7 @@ for path in find(None):
 module = ValueIteration(2, 5)
 module(torch.rand(3, 2, 4, 4))[0].sum().backward()
 module.requires_grad_(False)(torch.rand(1, 2, 6, 5))
+DNC(3, 4, Heads(2, 2, 5))(torch.rand(7, 3, 3))[0].sum().backward()
 
 ours = "worlds", "planners", "learned", "bench"
 modules = [module for name, module in sys.modules.items() if name.startswith(ours)]
@@ -83,7 +91,8 @@ def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
     assert place.parent == tmp_path
     assert list(place.glob("planners.astar.search-*.nbc"))
     assert "with gradients" in told["value iteration, 128 maps of 16x16, 20 times"]
+    assert "with gradients" in told["a DNC, 64 samples, 10 steps"]
     found = json.loads(run(PLAYED, tmp_path))
-    assert found["played"] == sorted(PLANNERS.values())
+    assert found["played"] == sorted([*PLANNERS.values(), *LEARNED.values()])
     assert (found["crashed"], found["compiled"]) == ([], [])
     assert {"planners.incremental", "planners.segment", "learned.value_iteration_kernels"} <= set(found["read from"])
