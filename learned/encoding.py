@@ -57,8 +57,8 @@ class Inputs(NamedTuple):
 
     image: Tensor
     """[B, 3, H, W] float32."""
-    places: Tensor
-    """[B, 2] int64, the agents' cells in the image."""
+    cells: Tensor
+    """[B] int64, where the agents are in the image: row * W + column."""
     sight: Tensor
     """[B, 3, S, S] float32."""
     compass: Tensor
@@ -70,8 +70,8 @@ class Inputs(NamedTuple):
 
     def here(self, maps: Tensor) -> Tensor:
         """What maps [B, C, H, W] say at the agents' cells: [B, C]."""
-        rows, columns = self.places.unbind(1)
-        return maps[torch.arange(len(maps), device=maps.device), :, rows, columns]
+        cells = self.cells[:, None, None].expand(-1, maps.shape[1], 1)  # [B, C, 1]
+        return maps.flatten(2).gather(2, cells)[..., 0]
 
 
 class Frame(NamedTuple):
@@ -94,7 +94,8 @@ def encode(known: Known, frame: Frame) -> Inputs:
     draw(known.cells, known.corners, known.places, known.goals, origins, image)
     draw(known.cells, known.corners, known.places, known.goals, known.places - SIGHT, sight)
     point(known.places, known.goals, known.moves, known.blocked, compass)
-    return Inputs(*map(torch.from_numpy, (image, known.places - origins, sight, compass)))
+    cells = (known.places - origins) @ (frame.shape[1], 1)  # [B]
+    return Inputs(*map(torch.from_numpy, (image, cells, sight, compass)))
 
 
 @kernel

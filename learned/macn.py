@@ -33,5 +33,5 @@ class MacnNetwork(RememberingNetwork):
     def plan(self, inputs: Inputs) -> Tensor:
         """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
         q, v = self.planner(inputs.image)
-        values = torch.cat([v.flatten(1), inputs.here(q)], 1)  # [B, H * W + 4]
-        return values - inputs.here(v[:, None])
+        here = inputs.here(q)  # [B, 4], of which the largest is V there
+        return torch.cat([v.flatten(1), here], 1) - here.amax(1, keepdim=True)

@@ -32,10 +32,10 @@ def seen(policy: Policy, batch: int, seed: int = 0) -> Inputs:
     rng = np.random.default_rng(seed)
     (rows, columns), side = policy.size, 2 * SIGHT + 1
     image, sight = (rng.random((batch, CHANNELS, *shape)) < 0.3 for shape in (policy.size, (side, side)))
-    places = rng.integers(0, (rows, columns), (batch, 2))
+    cells = rng.integers(0, rows * columns, batch)
     compass = rng.normal(size=(batch, COMPASS))
     floats = [torch.from_numpy(part.astype(np.float32)) for part in (image, sight, compass)]
-    return Inputs(floats[0], torch.from_numpy(places), floats[1], floats[2])
+    return Inputs(floats[0], torch.from_numpy(cells), floats[1], floats[2])
 
 
 def run(network: Any, steps: list[Inputs]) -> Tensor:
@@ -93,10 +93,11 @@ def test_macn_sees_values_relative_to_its_cell() -> None:
     network, inputs = policy.network(), seen(policy, 3)
     told = network.plan(inputs)
     q, v = plain(network.planner.reward_map(inputs.image), network.planner.normalised(), 5)
-    for b, (row, column) in enumerate(inputs.places.tolist()):
+    for b, cell in enumerate(inputs.cells.tolist()):
+        row, column = divmod(cell, 9)
         expected = torch.cat([v[b].flatten(), q[b, :, row, column]]) - v[b, row, column]
         assert torch.allclose(told[b], expected, atol=1e-5)
-        assert told[b, row * 9 + column] == 0
+        assert told[b, cell] == 0
         assert told[b, -4:].max() == 0
 
 
@@ -107,7 +108,8 @@ def test_vin_acts_on_q_at_its_cell() -> None:
     network, inputs = policy.network(), seen(policy, 3)
     q, _ = plain(network.planner.reward_map(inputs.image), network.planner.normalised(), 16)
     scores, _ = network(inputs, ())
-    for b, (row, column) in enumerate(inputs.places.tolist()):
+    for b, cell in enumerate(inputs.cells.tolist()):
+        row, column = divmod(cell, 9)
         assert torch.allclose(scores[b], network.output.weight @ q[b, :, row, column], atol=1e-5)
     blind = inputs._replace(sight=torch.zeros_like(inputs.sight), compass=torch.zeros_like(inputs.compass))
     assert torch.equal(network(blind, ())[0], scores)
