@@ -10,8 +10,10 @@ import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from learned import value_iteration_kernels as kernels
 from learned.threads import share
+from learned.value_iteration_backward import backward_blocks
+from learned.value_iteration_forward import forward_blocks
+from learned.value_iteration_planes import plane_size
 from worlds.types import Array
 
 LANES = 16
@@ -21,36 +23,44 @@ LANES = 16
 def fast(reward: Tensor, weights: Tensor, iterations: int, barrier: Tensor | None = None) -> tuple[Tensor, Tensor]:
     """Q and V as `learned.value_iteration.plain` gives them, for float32 or float64 and four actions."""
     barrier = reward.new_empty(0, 4, *reward.shape[2:]) if barrier is None else barrier
-    inputs = reward.contiguous(), weights.flatten(2).contiguous(), barrier.contiguous()
+    inputs = reward.contiguous(), barrier.contiguous(), weights.flatten(2).contiguous()
     if torch.is_grad_enabled() and any(x.requires_grad for x in inputs):
         q, v = _Fast.apply(*inputs, iterations)  # type: ignore[no-untyped-call]  # as PyTorch has it
-        return q, v
-    lanes = _lanes(len(reward))
-    return _forward(*inputs, iterations, lanes, *_history(reward, 1, lanes))
+    else:
+        lanes = _lanes(len(reward))
+        q, v = _forward(*inputs, iterations, lanes, *_history(reward, lanes, blocks=0, iterations=0))
+    return q, v.squeeze(1)  # [B, 1, H, W] -> [B, H, W]
 
 
 class _Fast(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, reward: Tensor, taps: Tensor, barrier: Tensor, iterations: int) -> tuple[Tensor, Tensor]:
+    def forward(ctx: Any, reward: Tensor, barrier: Tensor, taps: Tensor, iterations: int) -> tuple[Tensor, Tensor]:
         ctx.lanes = _lanes(len(reward))
-        values, choices = _history(reward, iterations, ctx.lanes)
-        ctx.save_for_backward(reward, taps, barrier, values, choices)
-        return _forward(reward, taps, barrier, iterations, ctx.lanes, values, choices)
+        history = _history(reward, ctx.lanes, -(-len(reward) // ctx.lanes), iterations)
+        ctx.save_for_backward(reward, barrier, taps, *history)
+        return _forward(reward, barrier, taps, iterations, ctx.lanes, *history)
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, dq: Tensor, dv: Tensor) -> tuple[Tensor, Tensor, Tensor, None]:
-        reward, taps, barrier, values, choices = ctx.saved_tensors
-        dq, dv = dq.contiguous(), dv.contiguous()
+        reward, barrier, taps, values, choices = ctx.saved_tensors
         dreward, dbarrier = torch.empty_like(reward), torch.empty_like(barrier)
         dtaps = taps.new_zeros(len(values), *taps.shape)  # [blocks, 4, C + 1, 9]
-        arrays = _arrays(reward, taps, values, choices, dq, dv, dreward, dbarrier, dtaps)
+        grads = dq.contiguous(), dv.contiguous(), dreward, dbarrier, dtaps
+        arrays = _arrays(reward, taps, values, choices, *grads)
+        share(lambda first, last: backward_blocks(first, last, ctx.lanes, *arrays), len(values))
+        return dreward, dbarrier, dtaps.sum(0), None
 
-        def run(first: int, last: int) -> None:
-            kernels.backward(first, last, ctx.lanes, reward.new_empty(9, values.shape[2]).numpy(), *arrays)
 
-        share(run, len(values))
-        return dreward, dtaps.sum(0), dbarrier, None
+def _forward(
+    reward: Tensor, barrier: Tensor, taps: Tensor, iterations: int, lanes: int, values: Tensor, choices: Tensor
+) -> tuple[Tensor, Tensor]:
+    q = reward.new_empty(len(reward), 4, *reward.shape[2:])
+    v = reward.new_empty(len(reward), 1, *reward.shape[2:])
+    arrays = _arrays(reward, barrier, taps, values, choices, q, v)
+    blocks = -(-len(reward) // lanes)
+    share(lambda first, last: forward_blocks(first, last, lanes, iterations, *arrays), blocks)
+    return q, v
 
 
 def _lanes(batch: int) -> int:
@@ -58,25 +68,10 @@ def _lanes(batch: int) -> int:
     return min(LANES, -(-batch // torch.get_num_threads()))
 
 
-def _history(reward: Tensor, depth: int, lanes: int) -> tuple[Tensor, Tensor]:
-    """Room for `depth` iterations of all blocks: values [blocks, depth + 1, P] and choices [blocks, depth, P]."""
-    batch, _, height, width = reward.shape
-    blocks, plane = -(-batch // lanes), (height + 2) * (width + 1) * lanes + 2 * lanes
-    return reward.new_empty(blocks, depth + 1, plane), reward.new_empty(blocks, depth, plane, dtype=torch.uint8)
-
-
-def _forward(
-    reward: Tensor, taps: Tensor, barrier: Tensor, iterations: int, lanes: int, values: Tensor, choices: Tensor
-) -> tuple[Tensor, Tensor]:
-    q = reward.new_empty(len(reward), 4, *reward.shape[2:])
-    v = reward.new_empty(len(reward), *reward.shape[2:])
-    arrays = _arrays(reward, barrier, taps, values, choices, q, v)
-
-    def run(first: int, last: int) -> None:
-        kernels.forward(first, last, lanes, iterations, reward.new_empty(5, values.shape[2]).numpy(), *arrays)
-
-    share(run, len(values))
-    return q, v
+def _history(reward: Tensor, lanes: int, blocks: int, iterations: int) -> tuple[Tensor, Tensor]:
+    """Room for what is kept of the iterations: values and choices [blocks, iterations, P]."""
+    shape = blocks, iterations, plane_size(lanes, *reward.shape[2:])
+    return reward.new_empty(shape), reward.new_empty(shape, dtype=torch.uint8)
 
 
 def _arrays(*tensors: Tensor) -> tuple[Array, ...]:

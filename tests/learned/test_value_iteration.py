@@ -135,6 +135,18 @@ def test_no_gradient_no_history() -> None:
         assert all(torch.equal(a, b) for a, b in zip(kept, forgotten, strict=True))
 
 
+def test_threads_may_change_on_the_way() -> None:
+    """Gradients are the same bits where PyTorch has other threads on the way back."""
+    reward, kernels = drawn(0, 12, 4, 5, 6), drawn(1, 4, 5, 3, 3)
+    found = []
+    for threads in (1, 3):
+        with threads_of_torch(1):
+            q, _ = fast(reward, kernels, 4)
+        with threads_of_torch(threads):
+            found.append(torch.autograd.grad(q.sum(), [reward, kernels]))
+    assert all(torch.equal(a, b) for a, b in zip(*found, strict=True))
+
+
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("tied", [(0, 1, 2, 3), (1, 2, 3), (2, 3), (1, 3)])
 def test_ties_go_to_the_first_action(form: Form, tied: tuple[int, ...]) -> None:
