@@ -1,4 +1,4 @@
-"""Value iteration beside the loop of public VIN code, and its rate beside a matrix product's, on two threads.
+"""Value iteration beside its plain form, and its rate beside a matrix product's, on two threads.
 
     pytest bench/timing/test_value_iteration.py -s
 
@@ -13,7 +13,6 @@ import pytest
 import torch
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor
-from torch.nn.functional import conv2d
 
 from learned.value_iteration import plain
 from learned.value_iteration_fast import fast
@@ -24,15 +23,6 @@ SHAPES = [(128, 16, 20), (32, 32, 40), (8, 64, 80), (512, 11, 16)]
 """Batch, rows and columns of a map, iterations."""
 
 Form = Callable[[Tensor, Tensor, int], tuple[Tensor, Tensor]]
-
-
-def public(reward: Tensor, kernels: Tensor, iterations: int) -> tuple[Tensor, Tensor]:
-    """The loop as public VIN code has it."""
-    v = torch.zeros_like(reward[:, :1])
-    for _ in range(iterations):
-        q = conv2d(torch.cat([reward, v], 1), kernels, padding=1)
-        v, _ = torch.max(q, dim=1, keepdim=True)
-    return q, v
 
 
 @pytest.fixture(autouse=True)
@@ -67,7 +57,7 @@ def both(form: Form, shape: tuple[int, int, int]) -> Callable[[], object]:
 
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
 @pytest.mark.parametrize("way", [forward, both])
-@pytest.mark.parametrize("form", [public, plain, fast])
+@pytest.mark.parametrize("form", [plain, fast])
 def test_form(
     benchmark: BenchmarkFixture, form: Form, way: Callable[..., Callable[[], object]], shape: tuple[int, int, int]
 ) -> None:
@@ -78,16 +68,16 @@ def test_form(
 
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
 def test_ratios(shape: tuple[int, int, int]) -> None:
-    """How many times as fast as the public loop, and the share of the matrix product's rate, taking turns."""
+    """How many times as fast as the plain form, and the share of the matrix product's rate, taking turns."""
     batch, size, iterations = shape
     left = torch.randn(SIDE, SIDE)
-    turns = [forward(public, shape), forward(fast, shape), both(public, shape), both(fast, shape), lambda: left @ left]
+    turns = [forward(plain, shape), forward(fast, shape), both(plain, shape), both(fast, shape), lambda: left @ left]
     times = np.array([[seconds(turn) for turn in turns] for _ in range(ROUNDS + 1)])[1:]  # [rounds, turns]
     rate = 2 * 9 * 4 * batch * size**2 * iterations / times[:, 1]
     product = 2 * SIDE**3 / times[:, 4]
     ahead, both_ways = np.median(times[:, 0] / times[:, 1]), np.median(times[:, 2] / times[:, 3])
     print(
-        f"\n{shape}: forward {ahead:.1f} times the public loop, with backward {both_ways:.1f}; "
+        f"\n{shape}: forward {ahead:.1f} times the plain form, with backward {both_ways:.1f}; "
         f"{np.median(rate) / 1e9:.0f} GFLOP/s, {np.median(rate / product):.0%} of a {SIDE}x{SIDE} product"
     )
 

@@ -1,14 +1,16 @@
-"""How fast we are beside others: the same work in rounds that take turns, on one thread, and the ratio of each round.
+"""How fast we are beside others: the same work in rounds that take turns, and the ratio of each round.
 
     python bench/timing/peers POGEMA_PYTHON        (`tox -e peers` makes both environments and runs this)
 
 A round of ours and the next one of theirs meet the same load of the machine, so their ratio means something where the
-two figures alone do not. Times are CPU seconds of the process that does the work. Said are the medians; beside the
-ratio, how many times as fast ours is, its least and its most.
+two figures alone do not. Episodes and searches run on one thread, in CPU seconds of the process that does the work;
+the networks' inner loops on two, by the wall clock. Said are the medians; beside the ratio, how many times as fast ours
+is, its least and its most.
 """
 
 import sys
 
+from iterating import iterations
 from rich.console import Console
 from rich.table import Table
 from searching import searches
@@ -19,7 +21,7 @@ from walking import walks
 def main() -> None:
     """Run all comparisons and print one table."""
     table = Table("work", "peer", "ours", "theirs", "ratio", "least to most", title="Beside others")
-    for turns in (*walks(sys.argv[1]), *searches()):
+    for turns in (*walks(sys.argv[1]), *searches(), *iterations()):
         table.add_row(*cells(turns))
     Console().print(table)
 

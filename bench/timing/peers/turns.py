@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from statistics import median
+from time import perf_counter
 from typing import NamedTuple, Self
 
 Round = Callable[[], float]
@@ -32,6 +33,17 @@ class Turns(NamedTuple):
         """How many times as fast ours is: the median over the rounds, the least and the most."""
         ratios = [theirs / ours for ours, theirs in zip(self.ours, self.theirs, strict=True)]
         return median(ratios), min(ratios), max(ratios)
+
+
+def elapsed(work: Callable[[], object]) -> Round:
+    """Seconds by the wall clock, for work on several threads."""
+
+    def one_round() -> float:
+        began = perf_counter()
+        work()
+        return perf_counter() - began
+
+    return one_round
 
 
 def per_second(seconds: list[float]) -> str:
