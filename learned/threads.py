@@ -12,6 +12,7 @@ import torch
 
 _OPENMP = ctypes.CDLL(None)  # all that is loaded for everyone in this process, PyTorch's OpenMP among it
 _PARALLEL = getattr(_OPENMP, "GOMP_parallel", None)
+_WORK = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 
 
 def share(run: Callable[[int, int], None], count: int) -> None:
@@ -35,6 +36,6 @@ def share(run: Callable[[int, int], None], count: int) -> None:
     if threads == 1 or _PARALLEL is None:
         work(None)
     else:
-        _PARALLEL(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(work), None, threads, 0)
+        _PARALLEL(_WORK(work), None, threads, 0)
     if len(done) < threads:
         raise RuntimeError(f"threads: {threads - len(done)} of {threads} calls failed; see the errors above")

@@ -36,7 +36,7 @@ def backward_blocks(
     for block in range(first, last):
         sample, sums = block * lanes, dweights[block]
         scratch[:] = 0
-        pack(dv, 0, sample, plane, lanes)
+        pack(dv.reshape(len(dv), 1, height, width), 0, sample, plane, lanes)
         for action in range(4):
             pack(dq, action, sample, total[action], lanes)
         grads = total  # only the last Q is a result

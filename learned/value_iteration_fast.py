@@ -6,6 +6,7 @@ which action gave each value is kept for the way back.
 
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
@@ -22,45 +23,47 @@ LANES = 16
 
 def fast(reward: Tensor, weights: Tensor, iterations: int, barrier: Tensor | None = None) -> tuple[Tensor, Tensor]:
     """Q and V as `learned.value_iteration.plain` gives them, for float32 or float64 and four actions."""
-    barrier = reward.new_empty(0, 4, *reward.shape[2:]) if barrier is None else barrier
-    inputs = reward.contiguous(), barrier.contiguous(), weights.flatten(2).contiguous()
+    inputs = (reward, weights) if barrier is None else (reward, weights, barrier)
     if torch.is_grad_enabled() and any(x.requires_grad for x in inputs):
-        q, v = _Fast.apply(*inputs, iterations)  # type: ignore[no-untyped-call]  # as PyTorch has it
-    else:
-        lanes = _lanes(len(reward))
-        q, v = _forward(*inputs, iterations, lanes, *_history(reward, lanes, blocks=0, iterations=0))
-    return q, v.squeeze(1)  # [B, 1, H, W] -> [B, H, W]
+        q, v = _Fast.apply(iterations, *inputs)  # type: ignore[no-untyped-call]  # as PyTorch has it
+        return q, v
+    arrays = _arrays(*inputs)
+    unkept = np.empty((0, 0, 0), arrays[0].dtype), np.empty((0, 0, 0), np.uint8)
+    return _forward(iterations, _lanes(len(reward)), *arrays, *unkept)
 
 
 class _Fast(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, reward: Tensor, barrier: Tensor, taps: Tensor, iterations: int) -> tuple[Tensor, Tensor]:
+    def forward(ctx: Any, iterations: int, *inputs: Tensor) -> tuple[Tensor, Tensor]:
+        reward = inputs[0]
         ctx.lanes = _lanes(len(reward))
-        history = _history(reward, ctx.lanes, -(-len(reward) // ctx.lanes), iterations)
-        ctx.save_for_backward(reward, barrier, taps, *history)
-        return _forward(reward, barrier, taps, iterations, ctx.lanes, *history)
+        kept = -(-len(reward) // ctx.lanes), iterations, plane_size(ctx.lanes, *reward.shape[2:])
+        history = reward.new_empty(kept), reward.new_empty(kept, dtype=torch.uint8)
+        ctx.save_for_backward(*history, *inputs)
+        return _forward(iterations, ctx.lanes, *_arrays(*inputs), *(x.numpy() for x in history))
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, dq: Tensor, dv: Tensor) -> tuple[Tensor, Tensor, Tensor, None]:
-        reward, barrier, taps, values, choices = ctx.saved_tensors
-        dreward, dbarrier = torch.empty_like(reward), torch.empty_like(barrier)
-        dtaps = taps.new_zeros(len(values), *taps.shape)  # [blocks, 4, C + 1, 9]
-        grads = dq.contiguous(), dv.contiguous(), dreward, dbarrier, dtaps
-        arrays = _arrays(reward, taps, values, choices, *grads)
+    def backward(ctx: Any, dq: Tensor, dv: Tensor) -> tuple[Tensor | None, ...]:
+        values, choices, *inputs = ctx.saved_tensors
+        reward, taps, barrier = _arrays(*inputs)
+        dreward, dbarrier = np.empty_like(reward), np.empty_like(barrier)
+        dtaps = np.zeros((len(values), *taps.shape), taps.dtype)  # [blocks, 4, C + 1, 9]
+        grads = _array(dq), _array(dv), dreward, dbarrier, dtaps
+        arrays = reward, taps, values.numpy(), choices.numpy(), *grads
         share(lambda first, last: backward_blocks(first, last, ctx.lanes, *arrays), len(values))
-        return dreward, dbarrier, dtaps.sum(0), None
+        found = dreward, dtaps.sum(0).reshape(inputs[1].shape), dbarrier
+        return None, *(torch.from_numpy(x) for x in found[: len(inputs)])
 
 
 def _forward(
-    reward: Tensor, barrier: Tensor, taps: Tensor, iterations: int, lanes: int, values: Tensor, choices: Tensor
+    iterations: int, lanes: int, reward: Array, taps: Array, barrier: Array, values: Array, choices: Array
 ) -> tuple[Tensor, Tensor]:
-    q = reward.new_empty(len(reward), 4, *reward.shape[2:])
-    v = reward.new_empty(len(reward), 1, *reward.shape[2:])
-    arrays = _arrays(reward, barrier, taps, values, choices, q, v)
-    blocks = -(-len(reward) // lanes)
-    share(lambda first, last: forward_blocks(first, last, lanes, iterations, *arrays), blocks)
-    return q, v
+    batch, _, height, width = reward.shape
+    q, v = np.empty((batch, 4, height, width), reward.dtype), np.empty((batch, height, width), reward.dtype)
+    arrays = reward, taps, barrier, values, choices, q, v
+    share(lambda first, last: forward_blocks(first, last, lanes, iterations, *arrays), -(-batch // lanes))
+    return torch.from_numpy(q), torch.from_numpy(v)
 
 
 def _lanes(batch: int) -> int:
@@ -68,11 +71,12 @@ def _lanes(batch: int) -> int:
     return min(LANES, -(-batch // torch.get_num_threads()))
 
 
-def _history(reward: Tensor, lanes: int, blocks: int, iterations: int) -> tuple[Tensor, Tensor]:
-    """Room for what is kept of the iterations: values and choices [blocks, iterations, P]."""
-    shape = blocks, iterations, plane_size(lanes, *reward.shape[2:])
-    return reward.new_empty(shape), reward.new_empty(shape, dtype=torch.uint8)
+def _arrays(reward: Tensor, weights: Tensor, barrier: Tensor | None = None) -> tuple[Array, Array, Array]:
+    """The inputs as the loops want them; NumPy, as a call of PyTorch takes longer than some iterations."""
+    maps, taps = _array(reward), _array(weights)
+    walls = np.empty((0, 4, *maps.shape[2:]), maps.dtype) if barrier is None else _array(barrier)
+    return maps, taps.reshape(*taps.shape[:2], 9), walls
 
 
-def _arrays(*tensors: Tensor) -> tuple[Array, ...]:
-    return tuple(tensor.detach().numpy() for tensor in tensors)
+def _array(tensor: Tensor) -> Array:
+    return np.ascontiguousarray(tensor.numpy(force=True))

@@ -14,8 +14,8 @@ def forward_blocks(
     lanes: int,
     iterations: int,
     reward: Array,
-    barrier: Array,
     weights: Array,
+    barrier: Array,
     values: Array,
     choices: Array,
     q: Array,
@@ -28,12 +28,12 @@ def forward_blocks(
         lanes: samples of a block; the last of all blocks may have fewer.
         iterations: at least 1.
         reward: [B, C, H, W].
-        barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
         weights: [4, C + 1, 9], the value's taps last.
+        barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
         values: [blocks, iterations, P] for the value after each iteration, or empty if none is to be kept.
         choices: of that shape, uint8, for the action that gave each value.
         q: [B, 4, H, W] for the last Q.
-        v: [B, 1, H, W] for its maximum over the actions.
+        v: [B, H, W] for its maximum over the actions.
     """
     channels, height, width = reward.shape[1:]
     row = (width + 1) * lanes
@@ -64,7 +64,7 @@ def forward_blocks(
             clear(after, lanes, height, width)
         for action in range(4):
             unpack(terms[action], q, action, sample, lanes)
-        unpack(after, v, 0, sample, lanes)
+        unpack(after, v.reshape(len(v), 1, height, width), 0, sample, lanes)
 
 
 @fused
