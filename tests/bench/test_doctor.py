@@ -95,4 +95,4 @@ def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
     found = json.loads(run(PLAYED, tmp_path))
     assert found["played"] == sorted([*PLANNERS.values(), *LEARNED.values()])
     assert (found["crashed"], found["compiled"]) == ([], [])
-    assert {"planners.incremental", "planners.segment", "learned.value_iteration_kernels"} <= set(found["read from"])
+    assert {"planners.incremental", "planners.segment", "learned.value_iteration_forward"} <= set(found["read from"])

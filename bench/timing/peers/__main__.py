@@ -11,6 +11,7 @@ is, its least and its most.
 import sys
 
 from iterating import iterations
+from remembering import memories
 from rich.console import Console
 from rich.table import Table
 from searching import searches
@@ -21,7 +22,7 @@ from walking import walks
 def main() -> None:
     """Run all comparisons and print one table."""
     table = Table("work", "peer", "ours", "theirs", "ratio", "least to most", title="Beside others")
-    for turns in (*walks(sys.argv[1]), *searches(), *iterations()):
+    for turns in (*walks(sys.argv[1]), *searches(), *iterations(), *memories()):
         table.add_row(*cells(turns))
     Console().print(table)
 
