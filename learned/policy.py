@@ -16,6 +16,7 @@ from torch import Tensor, nn
 
 from learned import checkpoint
 from learned.encoding import STILL, Frame, Inputs, Known, encode
+from learned.value_iteration import RewardMap
 from worlds.belief import KnownMap
 from worlds.files import read, sha256
 from worlds.mistake import Mistake
@@ -138,7 +139,11 @@ def weighted(settings: Policy) -> Network:
     if settings.checkpoint != NONE:
         place = checkpoint.place_of(settings.checkpoint)
         checkpoint.read_weights(place, checkpoint.read_card(place), network)
-    return network.requires_grad_(False).to(settings.device)
+    network.requires_grad_(False).to(settings.device)
+    for part in network.modules():
+        if isinstance(part, RewardMap):
+            part.settle()
+    return network
 
 
 class PolicyAgent:

@@ -29,16 +29,25 @@ class RewardMap(nn.Module):
         super().__init__()
         self.features = nn.Conv2d(channels, hidden, 3, padding=1)
         self.mix = nn.Conv2d(hidden, rewards, 1)
+        self.settled: tuple[Tensor, Tensor] | None = None
 
     def forward(self, image: Tensor) -> Tensor:
         """R [B, rewards, H, W] of an image [B, channels, H, W].
 
         Only the image is padded, before either convolution, so this is exact at the borders too.
         """
+        return conv2d(image, *(self.settled or self.collapsed()), padding=1)
+
+    def collapsed(self) -> tuple[Tensor, Tensor]:
+        """The one kernel [rewards, channels, 3, 3] and its bias [rewards]."""
         mix = self.mix.weight.flatten(1)  # [rewards, hidden]
-        weight = torch.einsum("rh,hcij->rcij", mix, self.features.weight)
         bias = mix @ cast(Tensor, self.features.bias) + cast(Tensor, self.mix.bias)
-        return conv2d(image, weight, bias, padding=1)
+        return torch.einsum("rh,hcij->rcij", mix, self.features.weight), bias
+
+    @torch.no_grad()
+    def settle(self) -> None:
+        """Work them out once and for all: from now on the weights must not change."""
+        self.settled = self.collapsed()
 
 
 class ValueIteration(nn.Module):

@@ -205,6 +205,15 @@ def test_reward_map_is_its_two_convolutions() -> None:
             torch.testing.assert_close(a, b, rtol=1e-10, atol=1e-10)
 
 
+def test_a_settled_reward_map_is_the_same() -> None:
+    """It gives what it gave before, bit for bit."""
+    image, reward_map = torch.randn(2, 3, 5, 6), RewardMap(3)
+    before = reward_map(image)
+    reward_map.settle()
+    assert torch.equal(reward_map(image), before)
+    assert not reward_map(image).requires_grad
+
+
 def test_module_is_its_parts() -> None:
     """The module computes value iteration of its reward map with its kernels."""
     module = ValueIteration(2, iterations=5)
