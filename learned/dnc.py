@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from learned.dnc_access import AccessState, Heads, access
+from learned.dnc_fast import fast_access
 
 
 class DNCState(NamedTuple):
@@ -36,6 +37,8 @@ class DNC(nn.Module):
         rows: int = 32,
         hidden: int = 256,
         clip: float = 20,
+        fast: bool = True,
+        keep_links_every: int = 1,
     ) -> None:
         """Draw the weights.
 
@@ -46,9 +49,11 @@ class DNC(nn.Module):
             rows: memory rows of a blank state; may be changed at any time.
             hidden: the controller's size.
             clip: the controller's cell and the outputs stay within +-clip.
+            fast: use the fused loops where the tensors are on the CPU.
+            keep_links_every: see `fast_access`.
         """
         super().__init__()
-        self.heads, self.rows, self.clip = heads, rows, clip
+        self.heads, self.rows, self.clip, self.fast, self.keep_links_every = heads, rows, clip, fast, keep_links_every
         read = heads.reads * heads.word
         self.controller = nn.LSTMCell(inputs + read, hidden)
         self.interface = nn.Linear(hidden, heads.interface)
@@ -72,6 +77,8 @@ class DNC(nn.Module):
 
     def access(self, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
         """The memory access for an interface vector [..., I]."""
+        if self.fast and interface.is_cpu:
+            return fast_access(self.heads, interface, state, self.keep_links_every)
         return access(self.heads.controls(interface), state)
 
     def forward(self, sequence: Tensor, state: DNCState | None = None) -> tuple[Tensor, DNCState]:

@@ -1,4 +1,4 @@
-"""The DNC does what its equations say, whatever the number of heads, rows and steps."""
+"""The DNC does what its equations say, fused or not, whatever the number of heads, rows and steps."""
 
 from collections.abc import Callable
 
@@ -11,6 +11,7 @@ from torch import Tensor
 
 from learned.dnc import DNC
 from learned.dnc_access import AccessState, Heads, access, allocation
+from learned.dnc_fast import fast_access
 from worlds.types import Array
 
 COUNTS = [1, 2, 4]
@@ -22,7 +23,7 @@ def plain(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[
 
 
 Form = Callable[[Heads, Tensor, AccessState[Tensor]], tuple[Tensor, AccessState[Tensor]]]
-FORMS = pytest.mark.parametrize("form", [plain])
+FORMS = pytest.mark.parametrize("form", [plain, fast_access])
 
 
 class Loop:
@@ -133,7 +134,7 @@ def used(heads: Heads, rows: int, batch: int, generator: torch.Generator) -> Acc
 @pytest.mark.parametrize("writes", COUNTS)
 @pytest.mark.parametrize("reads", COUNTS)
 def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: int, links: bool) -> None:
-    """The form agrees with loops over heads and rows in what is read and in the state, to 1e-5."""
+    """Both forms agree with loops over heads and rows in what is read and in the state, to 1e-5."""
     generator = torch.Generator().manual_seed(0)
     heads = Heads(reads, writes, 5, links)
     loop, state = Loop(heads, 9), used(heads, 9, 2, generator)
@@ -149,6 +150,54 @@ def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: 
     np.testing.assert_allclose(state.usage[1], loop.usage, atol=1e-5)
     np.testing.assert_allclose(state.links[1], loop.links, atol=1e-5)
     np.testing.assert_allclose(state.precedence[1], loop.precedence, atol=1e-5)
+
+
+def gradients(
+    form: Form, heads: Heads, interfaces: list[Tensor], start: list[Tensor], seed: int
+) -> list[Tensor | None]:
+    """Those of a random function of all reads and of the last state."""
+    generator = torch.Generator().manual_seed(seed)
+    state, loss = AccessState(*start), torch.zeros((), dtype=interfaces[0].dtype)
+    for interface in interfaces:
+        read, state = form(heads, interface, state)
+        loss = loss + (read * draw(generator, *read.shape)).sum()
+    loss = loss + sum((part * draw(generator, *part.shape)).sum() for part in state)
+    return list(torch.autograd.grad(loss, [*interfaces, *start], allow_unused=True))
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(1, 4), st.integers(1, 4), st.booleans(), st.integers(2, 18), st.integers(1, 4), st.integers(0, 999))
+def test_gradients_are_those_of_the_plain_form(
+    reads: int, writes: int, links: bool, rows: int, every: int, seed: int
+) -> None:
+    """Through five steps, by every input and part of the first state, to 1e-5 in norm, links kept or linked again."""
+    generator = torch.Generator().manual_seed(seed)
+    heads = Heads(reads, writes, 3, links)
+    _, state = plain(heads, draw(generator, 3, heads.interface), used(heads, rows, 3, generator))
+    start = [part.requires_grad_() for part in state]
+    interfaces = [draw(generator, 3, heads.interface).requires_grad_() for _ in range(5)]
+    expected = gradients(plain, heads, interfaces, start, seed)
+    fast = gradients(lambda *arguments: fast_access(*arguments, every), heads, interfaces, start, seed)
+    for mine, theirs in zip(fast, expected, strict=True):
+        if theirs is None:  # past write weightings have no gradient
+            assert not mine.any()
+        else:
+            assert (mine - theirs).norm() <= 1e-5 * theirs.norm()
+
+
+def test_links_are_kept_as_rarely_as_asked() -> None:
+    """With `every` 3, two steps out of three keep no links, and the backward pass leaves none behind."""
+    heads = Heads()
+    state = heads.blank(6, (2,))
+    nodes = []
+    for _ in range(7):
+        interface = torch.randn(2, heads.interface, requires_grad=True)
+        reads, state = fast_access(heads, interface, state, 3)
+        nodes.append(reads.grad_fn)
+    kept = [node.links is not None for node in nodes]
+    assert kept == [True, False, False, True, False, False, True]
+    reads.sum().backward()
+    assert [node.links is not None for node in nodes] == kept
 
 
 @FORMS
@@ -233,9 +282,29 @@ def test_ten_thousand_random_steps_give_numbers(form: Form) -> None:
     assert all(part.isfinite().all() for part in state)
 
 
-def test_one_sample_is_a_batch_of_one() -> None:
+@pytest.mark.parametrize("links", [True, False])
+def test_a_network_is_the_same_plain_and_fast(links: bool) -> None:
+    """Outputs, states and the gradients of all parameters agree over a sequence."""
+    heads = Heads(2, 2, 4, links)
+    torch.manual_seed(0)
+    networks = [DNC(3, 5, heads, rows=6, hidden=16, fast=fast).double() for fast in (False, True)]
+    networks[1].load_state_dict(networks[0].state_dict())
+    sequence = torch.randn(4, 7, 3, dtype=torch.float64)
+    start = networks[0].blank((4,))._replace(access=used(heads, 6, 4, torch.Generator().manual_seed(0)))
+    (plain_outputs, plain_state), (outputs, state) = (network(sequence, start) for network in networks)
+    assert outputs.shape == (4, 7, 5)
+    torch.testing.assert_close(outputs, plain_outputs)
+    torch.testing.assert_close(state, plain_state)
+    for result in (plain_outputs, outputs):
+        result.square().sum().backward()
+    for mine, theirs in zip(networks[1].parameters(), networks[0].parameters(), strict=True):
+        torch.testing.assert_close(mine.grad, theirs.grad)
+
+
+@pytest.mark.parametrize("fast", [True, False])
+def test_one_sample_is_a_batch_of_one(fast: bool) -> None:
     """Without a batch, shapes lose it and numbers stay; step by step is the same as in one go."""
-    network = DNC(3, 5, Heads(), rows=6, hidden=16)
+    network = DNC(3, 5, Heads(), rows=6, hidden=16, fast=fast)
     sequence = torch.randn(7, 3)
     outputs, state = network(sequence)
     batched, _ = network(sequence[None])
