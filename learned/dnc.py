@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from learned.dnc_access import AccessState, Heads, access
+from learned.dnc_controller import Controller
 from learned.dnc_fast import fast_access
 
 
@@ -55,20 +56,21 @@ class DNC(nn.Module):
         super().__init__()
         self.heads, self.rows, self.clip, self.fast, self.keep_links_every = heads, rows, clip, fast, keep_links_every
         read = heads.reads * heads.word
-        self.controller = nn.LSTMCell(inputs + read, hidden)
+        self.controller = Controller(inputs + read, hidden)
         self.interface = nn.Linear(hidden, heads.interface)
         self.output = nn.Linear(hidden + read, outputs)
 
     def blank(self, batch: tuple[int, ...] = ()) -> DNCState:
         """The state before the first step: zeros."""
         weight = self.output.weight
-        hidden = weight.new_zeros(*batch, self.controller.hidden_size)
+        hidden = weight.new_zeros(*batch, self.controller.hidden)
         reads = weight.new_zeros(*batch, self.heads.reads * self.heads.word)
         return DNCState(hidden, hidden, reads, self.heads.blank(self.rows, batch, weight))
 
     def step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
         """From inputs [..., inputs], with or without a batch, to outputs [..., outputs] and the next state."""
-        hidden, cell = self.controller(torch.cat([x, state.reads], -1), (state.hidden, state.cell))
+        before = state.hidden, state.cell
+        hidden, cell = self.controller(torch.cat([x, state.reads], -1), before, fast=self.fast)
         cell = cell.clamp(-self.clip, self.clip)  # `hidden` is within +-1 by itself
         reads, after = self.access(self.interface(hidden), state.access)
         reads = reads.flatten(-2)  # [..., R, D] -> [..., R * D]

@@ -6,7 +6,6 @@ few steps only, and be worked out again in between.
 
 from typing import Any, NamedTuple
 
-import numpy as np
 import torch
 from torch import Tensor
 from torch.autograd import Function
@@ -16,9 +15,8 @@ from learned.dnc_access import AccessState, Heads
 from learned.dnc_kernels import forward
 from learned.dnc_kernels_back import backward, relink
 from learned.dnc_layout import Buffers, Layout, layout
+from learned.lanes import NUMBERS
 from learned.native import run
-
-NUMBERS: dict[torch.dtype, Any] = {torch.float32: np.float32, torch.float64: np.float64}
 
 
 def fast_access(

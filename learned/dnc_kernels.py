@@ -18,7 +18,7 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 
 from learned.dnc_access import EPSILON, AccessState
-from learned.lanes import LANES, at, decay, full, larger, logarithm, put, root, until
+from learned.lanes import LANES, at, decay, full, larger, put, root, sigmoid, softplus, until
 from learned.native import job, native, pointer, take
 from worlds.kernel import fused, kernel
 from worlds.types import Array
@@ -176,19 +176,6 @@ def lay(samples: Array, rows: Array) -> None:
     for lane in range(samples.shape[0]):
         for k in range(rows.shape[0]):
             rows[k, lane] = samples[lane, k]
-
-
-@fused
-def sigmoid(x: Any) -> Any:
-    """1 / (1 + e^-x)."""
-    e = decay(x)
-    return until(x, 0, e, 1) / (1 + e)
-
-
-@fused
-def softplus(x: Any) -> Any:
-    """log(1 + e^x)."""
-    return larger(0, x) + logarithm(decay(x))
 
 
 @fused

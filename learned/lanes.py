@@ -5,8 +5,7 @@ sixteen when its numbers are lanes. Each operation is one AVX-512 instruction fo
 loops around it, where loops over rows need long rows to become vector code.
 
     rows    [any, at least 16] the arrays of such a kernel; row i, or its first sixteen numbers, is one `Lanes`
-    at, put, full, until, decay, logarithm, root, larger, + - * /    what can be done with them; other operands
-            of + - * / may be plain numbers, which take the type of the lanes
+    x + y    and - * /: where one is a plain number, it takes the type of the other's lanes
 """
 
 import math
@@ -14,6 +13,8 @@ import operator
 from collections.abc import Callable
 from typing import Any, cast
 
+import numpy as np
+import torch
 from llvmlite import ir
 from numba import types
 from numba.core.typing.templates import AbstractTemplate, infer_global
@@ -22,6 +23,7 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 from worlds.kernel import fused
 
 LANES = 16
+NUMBERS: dict[torch.dtype, Any] = {torch.float32: np.float32, torch.float64: np.float64}
 LN2 = math.log(2)
 SERIES = tuple(1 / math.factorial(k) for k in range(13, -1, -1))
 
@@ -208,3 +210,24 @@ def logarithm(x: Any) -> Any:
     for term in (1 / 31, 1 / 29, 1 / 27, 1 / 25, 1 / 23, 1 / 21, 1 / 19, 1 / 17, 1 / 15, 1 / 13, 1 / 11, 1 / 9, 1 / 7):
         total = total * square + term
     return 2 * s * (((total * square + 1 / 5) * square + 1 / 3) * square + 1)
+
+
+@fused
+def sigmoid(x: Any) -> Any:
+    """1 / (1 + e^-x)."""
+    e = decay(x)
+    return until(x, 0, e, 1) / (1 + e)
+
+
+@fused
+def tanh(x: Any) -> Any:
+    """(e^x - e^-x) / (e^x + e^-x)."""
+    e = decay(2 * x)
+    size = (1 - e) / (1 + e)
+    return until(x, 0, 0 - size, size)
+
+
+@fused
+def softplus(x: Any) -> Any:
+    """log(1 + e^x)."""
+    return larger(0, x) + logarithm(decay(x))

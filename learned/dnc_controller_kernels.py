@@ -1,0 +1,93 @@
+"""The loops of `learned.dnc_controller` over the gates of a sample, forward and backward, sixteen at a time."""
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numba import carray  # type: ignore[attr-defined]  # it does
+
+from learned.lanes import LANES, at, put, sigmoid, tanh
+from learned.native import job, native, pointer, take
+from worlds.kernel import fused, kernel
+from worlds.types import Array
+
+FORWARD = job("hidden", "gates", "cell", "h", "c", "tanh")
+BACKWARD = job("hidden", "gates", "cell", "d_h", "d_c", "tanh", "d_gates", "d_cell")
+"""The size H, then addresses: gates [B, 4 * H], all others [B, H]; `cell` is that before the step."""
+
+
+@lru_cache
+def squash(number: type[np.floating[Any]]) -> int:
+    """The address of the loop that squashes gates where they lie and finds h, c and the tanh of c."""
+
+    def loop(address: Any) -> None:
+        job = carray(address, 1, FORWARD)[0]
+        sample, h = take(address), job.hidden
+        while sample < job.blocks:
+            squash_sample(
+                rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
+                rows(number, job.h, h, sample), rows(number, job.c, h, sample), rows(number, job.tanh, h, sample),
+            )  # fmt: skip
+            sample = take(address)
+
+    return native(loop)
+
+
+@lru_cache
+def squash_back(number: type[np.floating[Any]]) -> int:
+    """The address of the loop that finds the gradients by gates not yet squashed and by the cell."""
+
+    def loop(address: Any) -> None:
+        job = carray(address, 1, BACKWARD)[0]
+        sample, h = take(address), job.hidden
+        while sample < job.blocks:
+            squash_sample_back(
+                rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
+                rows(number, job.d_h, h, sample), rows(number, job.d_c, h, sample), rows(number, job.tanh, h, sample),
+                rows(number, job.d_gates, 4 * h, sample), rows(number, job.d_cell, h, sample),
+            )  # fmt: skip
+            sample = take(address)
+
+    return native(loop)
+
+
+@kernel
+def rows(number: Any, address: int, size: int, sample: int) -> Array:
+    """[size / 16, 16] one sample's numbers of an array [B, size]."""
+    count = size // LANES
+    return carray(pointer(address), ((sample + 1) * count, LANES), number)[sample * count :]
+
+
+@fused
+def squash_sample(gates: Array, cell: Array, h: Array, c: Array, tanhs: Array) -> None:
+    """One sample."""
+    count = len(cell)
+    for k in range(count):
+        write, forget = sigmoid(at(gates, k)), sigmoid(at(gates, count + k))
+        candidate, output = tanh(at(gates, 2 * count + k)), sigmoid(at(gates, 3 * count + k))
+        new = forget * at(cell, k) + write * candidate
+        put(c, k, new)
+        put(tanhs, k, tanh(new))
+        put(h, k, output * tanh(new))
+        put(gates, k, write)
+        put(gates, count + k, forget)
+        put(gates, 2 * count + k, candidate)
+        put(gates, 3 * count + k, output)
+
+
+@fused
+def squash_sample_back(
+    gates: Array, cell: Array, d_h: Array, d_c: Array, tanhs: Array, d_gates: Array, d_cell: Array
+) -> None:
+    """Back through one sample."""
+    count = len(cell)
+    for k in range(count):
+        write, forget = at(gates, k), at(gates, count + k)
+        candidate, output = at(gates, 2 * count + k), at(gates, 3 * count + k)
+        g, t = at(d_h, k), at(tanhs, k)
+        d_new = at(d_c, k) + g * output * (1 - t * t)
+        put(d_gates, k, d_new * candidate * write * (1 - write))
+        put(d_gates, count + k, d_new * at(cell, k) * forget * (1 - forget))
+        put(d_gates, 2 * count + k, d_new * write * (1 - candidate * candidate))
+        put(d_gates, 3 * count + k, g * t * output * (1 - output))
+        put(d_cell, k, d_new * forget)
