@@ -40,7 +40,7 @@ class Lanes(types.Type):
 @register_model(Lanes)
 class _Vector(models.PrimitiveModel):
     def __init__(self, manager: Any, lanes: Lanes) -> None:
-        super().__init__(manager, lanes, ir.VectorType(manager.lookup(lanes.number).get_value_type(), LANES))
+        super().__init__(manager, lanes, ir.VectorType(manager.lookup(lanes.number).get_value_type(), LANES))  # type: ignore[no-untyped-call]  # Numba's
 
 
 def instruction(compose: Callable[..., Any]) -> Callable[..., Any]:
