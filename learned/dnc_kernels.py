@@ -331,14 +331,20 @@ def along(rows: int, count: int, links: Array, vectors: Array, ahead: Array, bac
     """The products of links and of transposed links with `count` vectors of rows."""
     for n in range(count * rows):
         put(back, n, full(back, 0))
-    for n in range(rows):
+    for n in range(0, rows, 2):  # two rows at a time, which share what they load
+        last = min(n + 1, rows - 1)
         for j in range(0, count * rows, rows):
-            start, total = at(vectors, j + n), full(ahead, 0)
+            x, y = at(vectors, j + n), at(vectors, j + last)
+            if last == n:
+                y = full(vectors, 0)
+            ahead_x, ahead_y = full(ahead, 0), full(ahead, 0)
             for m in range(rows):
-                to = at(links, n * rows + m)
-                total += to * at(vectors, j + m)
-                put(back, j + m, at(back, j + m) + to * start)
-            put(ahead, j + n, total)
+                of_x, of_y, v = at(links, n * rows + m), at(links, last * rows + m), at(vectors, j + m)
+                ahead_x += of_x * v
+                ahead_y += of_y * v
+                put(back, j + m, at(back, j + m) + of_x * x + of_y * y)
+            put(ahead, j + last, ahead_y)
+            put(ahead, j + n, ahead_x)
 
 
 @fused

@@ -129,9 +129,8 @@ def test_ratio(work: str) -> None:
     plain, fast = (WORK[work](name) for name in FORMS)
     times = taking_turns([plain, fast])
     before, after = 1e6 * np.median(times, 0)
-    print(
-        f"\n{work}: plain {before:.0f} us, fast {after:.0f} us, {np.median(times[:, 0] / times[:, 1]):.1f} times as fast"
-    )
+    ratio = np.median(times[:, 0] / times[:, 1])
+    print(f"\n{work}: plain {before:.0f} us, fast {after:.0f} us, {ratio:.1f} times as fast")
 
 
 def taking_turns(turns: list[Turn]) -> Array:
