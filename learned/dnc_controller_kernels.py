@@ -7,8 +7,8 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 
 from learned.lanes import LANES, at, put, sigmoid, tanh
-from learned.native import job, native, pointer, take
-from worlds.kernel import fused, kernel
+from learned.native import job, pointer, take
+from worlds.kernel import callback, fused, kernel
 from worlds.types import Array
 
 FORWARD = job("hidden", "gates", "cell", "h", "c", "tanh")
@@ -30,7 +30,7 @@ def squash(number: type[np.floating[Any]]) -> int:
             )  # fmt: skip
             sample = take(address)
 
-    return native(loop)
+    return callback(loop)
 
 
 @lru_cache
@@ -48,7 +48,7 @@ def squash_back(number: type[np.floating[Any]]) -> int:
             )  # fmt: skip
             sample = take(address)
 
-    return native(loop)
+    return callback(loop)
 
 
 @kernel

@@ -19,8 +19,8 @@ from numba import carray  # type: ignore[attr-defined]  # it does
 
 from learned.dnc_access import EPSILON, AccessState
 from learned.lanes import LANES, at, decay, full, larger, put, root, sigmoid, softplus, until
-from learned.native import job, native, pointer, take
-from worlds.kernel import fused, kernel
+from learned.native import job, pointer, take
+from worlds.kernel import callback, fused, kernel
 from worlds.types import Array
 
 Sizes = tuple[int, int, int, int, int]
@@ -128,7 +128,7 @@ def forward(number: type[np.floating[Any]]) -> int:
             step(sizes_of(job), interface, old, new, reads, tape_of(number, job, block))
             block = take(address)
 
-    return native(loop)
+    return callback(loop)
 
 
 @kernel

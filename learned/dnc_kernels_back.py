@@ -28,8 +28,8 @@ from learned.dnc_kernels import (
     tape_of,
 )  # fmt: skip
 from learned.lanes import LANES, at, decay, full, put, until
-from learned.native import native, take
-from worlds.kernel import fused, kernel
+from learned.native import take
+from worlds.kernel import callback, fused, kernel
 from worlds.types import Array
 
 
@@ -54,7 +54,7 @@ def backward(number: type[np.floating[Any]]) -> int:
             step_back(sizes, old, new, tape_of(number, job, block), d_reads, d_new, d_old, d_interface)
             block = take(address)
 
-    return native(loop)
+    return callback(loop)
 
 
 @lru_cache
@@ -71,7 +71,7 @@ def relink(number: type[np.floating[Any]]) -> int:
             link(job.linked, old.links, old.precedence, new.write_weights, new.links, precedence)
             block = take(address)
 
-    return native(loop)
+    return callback(loop)
 
 
 @kernel

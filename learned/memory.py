@@ -7,6 +7,7 @@ from torch import Tensor, nn
 
 from learned.dnc import DNC
 from learned.dnc_access import Heads
+from learned.dnc_controller import Controller
 from learned.encoding import COMPASS, SEEN, Inputs
 from learned.policy import Network, Policy
 from learned.value_iteration import ACTIONS
@@ -85,18 +86,18 @@ class LSTM(nn.Module):
     def __init__(self, inputs: int, hidden: int) -> None:
         """Draw the weights."""
         super().__init__()
-        self.controller = nn.LSTMCell(inputs, hidden)
+        self.controller = Controller(inputs, hidden)
         self.output = nn.Linear(hidden, ACTIONS)
 
     def blank(self, batch: tuple[int, ...] = ()) -> LSTMState:
         """The state before the first step: zeros."""
-        zeros = self.output.weight.new_zeros(*batch, self.controller.hidden_size)
+        zeros = self.output.weight.new_zeros(*batch, self.controller.hidden)
         return LSTMState(zeros, zeros)
 
     def step(self, x: Tensor, state: LSTMState) -> tuple[Tensor, LSTMState]:
         """From features [..., inputs] to scores [..., 4] and the next state."""
-        state = LSTMState(*self.controller(x, state))
-        return self.output(state.hidden), state
+        hidden, cell = self.controller(x, state)
+        return self.output(hidden), LSTMState(hidden, cell)
 
 
 class FeedForward(nn.Module):

@@ -6,35 +6,21 @@ microseconds, these cost 1; threads of a second pool would have to wait for PyTo
 """
 
 import ctypes
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import torch
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
 
 from learned.lanes import instruction
 
 _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP library and its stand-ins
 
 
-_KEPT: list[Any] = []  # so that their code stays
-
-
 def job(*names: str) -> np.dtype[np.void]:
     """The type of a job: first `next`, the first block that nobody took, and `blocks`, how many there are."""
     return np.dtype([(name, np.int64) for name in ("next", "blocks", *names)])
-
-
-def native(loop: Callable[[Any], None]) -> int:
-    """The address of a loop that is given the address of a job, compiled."""
-    try:
-        compiled: Any = cfunc("void(voidptr)", cache=True)(loop)
-    except RuntimeError:  # Numba: "no locator available", nothing is writable
-        compiled = cfunc("void(voidptr)")(loop)
-    _KEPT.append(compiled)
-    return int(compiled.address)
 
 
 def run(loop: int, blocks: int, *numbers: int) -> None:

@@ -16,6 +16,8 @@ from typing import Any, TypeVar, cast
 from uuid import uuid4
 
 import numba
+from numba import types
+from numba.core.ccallback import CFunc
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
@@ -24,6 +26,8 @@ from worlds.streams import digest
 F = TypeVar("F", bound=Callable[..., Any])
 
 HERE = Path(__file__).parent
+
+_CALLBACKS: list[object] = []  # so that their code stays
 
 
 def kernel(function: F) -> F:
@@ -39,6 +43,15 @@ def fused(function: F) -> F:
 def summing(function: F) -> F:
     """A `fused` kernel that may also add its numbers in any order, for long sums."""
     return _compile(function, fastmath={"contract", "reassoc"})
+
+
+def callback(loop: Callable[[Any], None]) -> int:
+    """The address of a loop of one pointer, compiled for callers outside of Python; the code stays."""
+    compiled: Any = CFunc(loop, ((types.voidptr,), types.void), {}, {})
+    compiled._cache = _Forms(loop)  # noqa: SLF001  Numba has no other door
+    compiled.compile()
+    _CALLBACKS.append(compiled)
+    return int(compiled.address)
 
 
 def kept(compiled: Callable[..., Any]) -> Path | None:
@@ -87,8 +100,9 @@ class _Forms:
         """
         self.name = f"{function.__module__}.{function.__qualname__}"
         text = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
-        self.source = digest(text, *function.__code__.co_positions())  # many lambdas have one name
-        self.fixed = function.__closure__ is None
+        held = [cell.cell_contents for cell in function.__closure__ or ()]
+        self.source = digest(text, *function.__code__.co_positions(), *held)  # many lambdas have one name
+        self.fixed = all(isinstance(thing, type) for thing in held)
         self.cache_path: Path | None = None
 
     def load_overload(self, signature: object, context: Any) -> Any:

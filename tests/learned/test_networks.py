@@ -135,8 +135,10 @@ def test_an_lstm_by_hand() -> None:
     """The state of an LSTM is PyTorch's over the sequence, and the scores a linear map of its output."""
     torch.manual_seed(0)
     memory, reference = LSTM(5, 7), nn.LSTM(5, 7)
-    for name, tensor in memory.controller.named_parameters():
-        reference.get_parameter(f"{name}_l0").data = tensor.data
+    weights = memory.controller.weight.split([5, 7], dim=1), (memory.controller.bias, torch.zeros(4 * 7))
+    for name, pair in zip(("weight", "bias"), weights, strict=True):
+        for side, tensor in zip(("ih", "hh"), pair, strict=True):
+            reference.get_parameter(f"{name}_{side}_l0").data = tensor.data
     sequence = torch.randn(6, 2, 5)
     state, scores = memory.blank((2,)), []
     for x in sequence:
