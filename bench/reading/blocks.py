@@ -84,8 +84,8 @@ def _fault(detail: ErrorDetails, value: Value, shape: Shape) -> list[Fault]:
         return []
     told = detail.get("ctx", {}).get("error")
     expected = str(told) if told is not None else around.words() or detail["msg"]
-    text = found.content if isinstance(found.content, str) else ""
-    return [found.wrong(expected.rstrip("."), near(text, around.choices()))]
+    text, choices = found.content if isinstance(found.content, str) else "", around.choices()
+    return [found.wrong(expected.rstrip("."), "" if text in choices else near(text, choices))]
 
 
 def _lacking(holder: Value, shape: Shape, key: str) -> Fault:

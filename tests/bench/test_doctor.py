@@ -74,7 +74,9 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
     monkeypatch.setattr("bench.doctor._requirements", lambda: ["fog-lamp", 'fog-horn; extra == "noise"'])
     for package in ("torch", "ompl"):
         monkeypatch.setitem(sys.modules, package, None)
-    monkeypatch.delitem(sys.modules, "planners.rrt_star", raising=False)
+    needy = [name for name in sys.modules if name == "planners.rrt_star" or name.startswith("learned.")]
+    for module in needy:
+        monkeypatch.delitem(sys.modules, module)
     monkeypatch.setattr("bench.doctor.kept", lambda _: None)
     examine()
     told = rows(capsys.readouterr().out)
