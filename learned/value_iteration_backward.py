@@ -1,61 +1,71 @@
 """The gradients of value iteration, in blocks of samples; the words are those of `learned.value_iteration_planes`."""
 
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numba import carray  # type: ignore[attr-defined]  # it does
+
+from learned.native import take
+from learned.value_iteration_job import BACKWARD, history_of, maps_of, weights_of
 from learned.value_iteration_planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
-from worlds.kernel import fused, kernel, summing
+from worlds.kernel import callback, fused, kernel, summing
 from worlds.types import Array
 
 
-@kernel
-def backward_blocks(
-    first: int,
-    last: int,
-    lanes: int,
-    reward: Array,
-    weights: Array,
-    values: Array,
-    choices: Array,
-    dq: Array,
-    dv: Array,
-    dreward: Array,
-    dbarrier: Array,
-    dweights: Array,
-) -> None:
-    """A value passes its gradient to the action that gave it, and to no other.
+@lru_cache
+def backward(number: type[np.floating[Any]]) -> int:
+    """The address of the loop of the gradients for a type of numbers."""
 
-    Args:
-        first, last, lanes, reward, weights: as in `forward_blocks`.
-        values, choices: [blocks, iterations, P] from `forward_blocks`.
-        dq, dv: gradients by the results, shaped like them.
-        dreward, dbarrier: shaped as `reward` and `barrier`, for the gradients by them.
-        dweights: [blocks, 4, C + 1, 9] zeros, for each block's part of the gradient by the weights.
-    """
+    def loop(address: Any) -> None:
+        job = carray(address, 1, BACKWARD)[0]
+        scratch = planes(9, plane_size(job.lanes, job.height, job.width), number)
+        block = take(address)
+        while block < job.blocks:
+            values, choices = history_of(number, block, job)
+            backward_block(
+                job.lanes, block * job.lanes,
+                maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
+                scratch, values, choices, maps_of(number, job.dq, 4, job), maps_of(number, job.dv, 1, job),
+                maps_of(number, job.dreward, job.channels, job), maps_of(number, job.dbarrier, 4, job),
+                weights_of(number, job.dweights, block, job),
+            )  # fmt: skip
+            block = take(address)
+
+    return callback(loop)
+
+
+@kernel
+def backward_block(
+    lanes: int, sample: int, reward: Array, weights: Array, scratch: Array, values: Array, choices: Array,
+    dq: Array, dv: Array, dreward: Array, dbarrier: Array, dweights: Array,
+) -> None:  # fmt: skip
+    """A value passes its gradient to the action that gave it, and to no other."""
     channels, height, width = reward.shape[1:]
     row = (width + 1) * lanes
-    scratch = planes(9, plane_size(lanes, height, width), reward.dtype)
     total, routed, plane = scratch[:4], scratch[4:8], scratch[8]  # gradients by the terms, by one Q, by one V
-    for block in range(first, last):
-        sample, sums = block * lanes, dweights[block]
-        scratch[:] = 0
-        pack(dv.reshape(len(dv), 1, height, width), 0, sample, plane, lanes)
+    scratch[:] = 0
+    dweights[:] = 0
+    pack(dv, 0, sample, plane, lanes)
+    for action in range(4):
+        pack(dq, action, sample, total[action], lanes)
+    grads = total  # only the last Q is a result
+    for k in range(len(choices) - 1, -1, -1):
+        route(plane, choices[k], routed, total)
+        if k:  # the value before the first is zero
+            overlap(dweights[:, channels], grads, values[k - 1], row, lanes)
+            gather(plane, weights[:, channels], grads, row, lanes)
+            clear(plane, lanes, height, width)
+        grads = routed
+    for channel in range(channels):
+        gather(plane, weights[:, channel], total, row, lanes)
+        unpack(plane, dreward, channel, sample, lanes)
+        plane[:] = 0
+        pack(reward, channel, sample, plane, lanes)
+        overlap(dweights[:, channel], total, plane, row, lanes)
+    if len(dbarrier):
         for action in range(4):
-            pack(dq, action, sample, total[action], lanes)
-        grads = total  # only the last Q is a result
-        for k in range(choices.shape[1] - 1, -1, -1):
-            route(plane, choices[block, k], routed, total)
-            if k:  # the value before the first is zero
-                overlap(sums[:, channels], grads, values[block, k - 1], row, lanes)
-                gather(plane, weights[:, channels], grads, row, lanes)
-                clear(plane, lanes, height, width)
-            grads = routed
-        for channel in range(channels):
-            gather(plane, weights[:, channel], total, row, lanes)
-            unpack(plane, dreward, channel, sample, lanes)
-            plane[:] = 0
-            pack(reward, channel, sample, plane, lanes)
-            overlap(sums[:, channel], total, plane, row, lanes)
-        if dbarrier.size:
-            for action in range(4):
-                unpack(total[action], dbarrier, action, sample, lanes)
+            unpack(total[action], dbarrier, action, sample, lanes)
 
 
 @kernel

@@ -4,79 +4,69 @@ The term of the reward is computed once, an iteration is one pass over blocks of
 which action gave each value is kept for the way back.
 """
 
+from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from learned.threads import share
-from learned.value_iteration_backward import backward_blocks
-from learned.value_iteration_forward import forward_blocks
+from learned.lanes import LANES, NUMBERS
+from learned.native import run
+from learned.value_iteration_backward import backward
+from learned.value_iteration_forward import forward
 from learned.value_iteration_planes import plane_size
-from worlds.types import Array
-
-LANES = 16
-"""Most samples of a block: 16 float32 are one cache line, and one AVX-512 register."""
 
 
 def fast(reward: Tensor, weights: Tensor, iterations: int, barrier: Tensor | None = None) -> tuple[Tensor, Tensor]:
     """Q and V as `learned.value_iteration.plain` gives them, for float32 or float64 and four actions."""
-    inputs = (reward, weights) if barrier is None else (reward, weights, barrier)
-    if torch.is_grad_enabled() and any(x.requires_grad for x in inputs):
+    inputs = reward, weights, barrier
+    if torch.is_grad_enabled() and any(x is not None and x.requires_grad for x in inputs):
         q, v = _Fast.apply(iterations, *inputs)  # type: ignore[no-untyped-call]  # as PyTorch has it
         return q, v
-    arrays = _arrays(*inputs)
-    unkept = np.empty((0, 0, 0), arrays[0].dtype), np.empty((0, 0, 0), np.uint8)
-    return _forward(iterations, _lanes(len(reward)), *arrays, *unkept)
+    return _forward(_lanes(reward), iterations, *map(_ready, inputs), None, None)
 
 
 class _Fast(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, iterations: int, *inputs: Tensor) -> tuple[Tensor, Tensor]:
-        reward = inputs[0]
-        ctx.lanes = _lanes(len(reward))
-        kept = -(-len(reward) // ctx.lanes), iterations, plane_size(ctx.lanes, *reward.shape[2:])
-        history = reward.new_empty(kept), reward.new_empty(kept, dtype=torch.uint8)
-        ctx.save_for_backward(*history, *inputs)
-        return _forward(iterations, ctx.lanes, *_arrays(*inputs), *(x.numpy() for x in history))
+    def forward(ctx: Any, iterations: int, *inputs: Tensor | None) -> tuple[Tensor, Tensor]:
+        reward, weights, barrier = map(_ready, inputs)
+        lanes = _lanes(reward)
+        kept = -(-len(reward) // lanes), iterations, plane_size(lanes, *reward.shape[2:])
+        given = reward, weights, barrier, reward.new_empty(kept), reward.new_empty(kept, dtype=torch.uint8)
+        ctx.lanes, ctx.iterations = lanes, iterations
+        ctx.save_for_backward(*given)
+        return _forward(lanes, iterations, *given)
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, dq: Tensor, dv: Tensor) -> tuple[Tensor | None, ...]:
-        values, choices, *inputs = ctx.saved_tensors
-        reward, taps, barrier = _arrays(*inputs)
-        dreward, dbarrier = np.empty_like(reward), np.empty_like(barrier)
-        dtaps = np.zeros((len(values), *taps.shape), taps.dtype)  # [blocks, 4, C + 1, 9]
-        grads = _array(dq), _array(dv), dreward, dbarrier, dtaps
-        arrays = reward, taps, values.numpy(), choices.numpy(), *grads
-        share(lambda first, last: backward_blocks(first, last, ctx.lanes, *arrays), len(values))
-        found = dreward, dtaps.sum(0).reshape(inputs[1].shape), dbarrier
-        return None, *(torch.from_numpy(x) for x in found[: len(inputs)])
+        reward, weights, barrier, values, choices = ctx.saved_tensors
+        dreward, dbarrier = torch.empty_like(reward), None if barrier is None else torch.empty_like(barrier)
+        parts = weights.new_empty(len(values), *weights.shape)
+        down = dq.contiguous(), dv.contiguous()
+        _run(backward, ctx.lanes, ctx.iterations, reward, weights, values, choices, *down, dreward, dbarrier, parts)
+        return None, dreward, torch.from_numpy(parts.numpy().sum(0)), dbarrier
 
 
-def _forward(
-    iterations: int, lanes: int, reward: Array, taps: Array, barrier: Array, values: Array, choices: Array
-) -> tuple[Tensor, Tensor]:
+def _forward(lanes: int, iterations: int, reward: Tensor, *others: Tensor | None) -> tuple[Tensor, Tensor]:
+    """Q and V by the weights, the barrier and room for the history."""
     batch, _, height, width = reward.shape
-    q, v = np.empty((batch, 4, height, width), reward.dtype), np.empty((batch, height, width), reward.dtype)
-    arrays = reward, taps, barrier, values, choices, q, v
-    share(lambda first, last: forward_blocks(first, last, lanes, iterations, *arrays), -(-batch // lanes))
-    return torch.from_numpy(q), torch.from_numpy(v)
+    q, v = reward.new_empty(batch, 4, height, width), reward.new_empty(batch, height, width)
+    _run(forward, lanes, iterations, reward, *others, q, v)
+    return q, v
 
 
-def _lanes(batch: int) -> int:
+def _run(loop: Callable[[Any], int], lanes: int, iterations: int, reward: Tensor, *others: Tensor | None) -> None:
+    """Run a loop on a job, of which these are the arrays in its order."""
+    addresses = [0 if x is None else x.data_ptr() for x in (reward, *others)]
+    run(loop(NUMBERS[reward.dtype]), -(-len(reward) // lanes), lanes, *reward.shape, iterations, *addresses)
+
+
+def _lanes(reward: Tensor) -> int:
     """Samples of a block, so that each thread has one."""
-    return min(LANES, -(-batch // torch.get_num_threads()))
+    return min(LANES, -(-len(reward) // torch.get_num_threads()))
 
 
-def _arrays(reward: Tensor, weights: Tensor, barrier: Tensor | None = None) -> tuple[Array, Array, Array]:
-    """The inputs as the loops want them; NumPy, as a call of PyTorch takes longer than some iterations."""
-    maps, taps = _array(reward), _array(weights)
-    walls = np.empty((0, 4, *maps.shape[2:]), maps.dtype) if barrier is None else _array(barrier)
-    return maps, taps.reshape(*taps.shape[:2], 9), walls
-
-
-def _array(tensor: Tensor) -> Array:
-    return np.ascontiguousarray(tensor.numpy(force=True))
+def _ready(tensor: Tensor | None) -> Any:
+    return None if tensor is None else tensor.contiguous()

@@ -1,70 +1,72 @@
 """Value iteration over blocks of samples; the words are those of `learned.value_iteration_planes`."""
 
-import numpy as np
+from functools import lru_cache
+from typing import Any
 
+import numpy as np
+from numba import carray  # type: ignore[attr-defined]  # it does
+
+from learned.native import take
+from learned.value_iteration_job import FORWARD, history_of, maps_of, weights_of
 from learned.value_iteration_planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
-from worlds.kernel import fused, kernel
+from worlds.kernel import callback, fused, kernel
 from worlds.types import Array
 
 
-@kernel
-def forward_blocks(
-    first: int,
-    last: int,
-    lanes: int,
-    iterations: int,
-    reward: Array,
-    weights: Array,
-    barrier: Array,
-    values: Array,
-    choices: Array,
-    q: Array,
-    v: Array,
-) -> None:
-    """Value iteration on some blocks.
+@lru_cache
+def forward(number: type[np.floating[Any]]) -> int:
+    """The address of the loop of value iteration for a type of numbers."""
 
-    Args:
-        first, last: the blocks, without the last.
-        lanes: samples of a block; the last of all blocks may have fewer.
-        iterations: at least 1.
-        reward: [B, C, H, W].
-        weights: [4, C + 1, 9], the value's taps last.
-        barrier: [B, 4, H, W] added to Q in every iteration, or [0, 4, H, W] for none.
-        values: [blocks, iterations, P] for the value after each iteration, or empty if none is to be kept.
-        choices: of that shape, uint8, for the action that gave each value.
-        q: [B, 4, H, W] for the last Q.
-        v: [B, H, W] for its maximum over the actions.
-    """
+    def loop(address: Any) -> None:
+        job = carray(address, 1, FORWARD)[0]
+        size = plane_size(job.lanes, job.height, job.width)
+        scratch, choices = planes(7, size, number), np.empty((2, size), np.uint8)
+        values = scratch[5:]  # two that take turns, if none is to be kept
+        block = take(address)
+        while block < job.blocks:
+            if job.values:
+                values, choices = history_of(number, block, job)
+            forward_block(
+                job.lanes, job.iterations, block * job.lanes,
+                maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
+                maps_of(number, job.barrier, 4, job), scratch, values, choices,
+                maps_of(number, job.q, 4, job), maps_of(number, job.v, 1, job),
+            )  # fmt: skip
+            block = take(address)
+
+    return callback(loop)
+
+
+@kernel
+def forward_block(
+    lanes: int, iterations: int, sample: int, reward: Array, weights: Array, barrier: Array,
+    scratch: Array, values: Array, choices: Array, q: Array, v: Array,
+) -> None:  # fmt: skip
+    """Value iteration on the block of samples from `sample` on."""
     channels, height, width = reward.shape[1:]
     row = (width + 1) * lanes
-    size = plane_size(lanes, height, width)
-    scratch = planes(5, size, reward.dtype)
     terms, plane = scratch[:4], scratch[4]  # of Q: what is the same in all iterations; of the reward
-    if not len(values):
-        values, choices = planes(2, size, reward.dtype)[None], np.empty((1, 2, size), np.uint8)
-    for block in range(first, last):
-        sample, kept = block * lanes, block % len(values)
-        scratch[:] = 0
-        if barrier.size:
-            for action in range(4):
-                pack(barrier, action, sample, terms[action], lanes)
-        for channel in range(channels):
-            pack(reward, channel, sample, plane, lanes)
-            correlate(terms, weights[:, channel], plane, row, lanes)
-        after = plane
-        for k in range(iterations):
-            before, turn = after, k % values.shape[1]
-            after, choice = values[kept, turn], choices[kept, turn]
-            if 0 < k < iterations - 1:
-                backup(terms, weights[:, channels], before, after, choice, row, lanes)
-            else:  # the value before the first is zero, and the last Q is a result
-                if k:
-                    correlate(terms, weights[:, channels], before, row, lanes)
-                maximise(terms, after, choice, row + lanes)
-            clear(after, lanes, height, width)
+    scratch[:5] = 0
+    if len(barrier):
         for action in range(4):
-            unpack(terms[action], q, action, sample, lanes)
-        unpack(after, v.reshape(len(v), 1, height, width), 0, sample, lanes)
+            pack(barrier, action, sample, terms[action], lanes)
+    for channel in range(channels):
+        pack(reward, channel, sample, plane, lanes)
+        correlate(terms, weights[:, channel], plane, row, lanes)
+    after = plane
+    for k in range(iterations):
+        before, turn = after, k % len(values)
+        after, choice = values[turn], choices[turn]
+        if 0 < k < iterations - 1:
+            backup(terms, weights[:, channels], before, after, choice, row, lanes)
+        else:  # the value before the first is zero, and the last Q is a result
+            if k:
+                correlate(terms, weights[:, channels], before, row, lanes)
+            maximise(terms, after, choice, row + lanes)
+        clear(after, lanes, height, width)
+    for action in range(4):
+        unpack(terms[action], q, action, sample, lanes)
+    unpack(after, v, 0, sample, lanes)
 
 
 @fused

@@ -24,6 +24,7 @@ from bench.shipped import find
 from learned.dnc import DNC
 from learned.dnc_access import Heads
 from learned.value_iteration import ValueIteration
+from worlds.kernel import _CALLBACKS as loops
 
 outcomes = set()
 networks = "{macn: {checkpoint: none}}, {vin: {checkpoint: none, stitched: true}}, {cnn_memory: {checkpoint: none}}"
@@ -43,11 +44,13 @@ DNC(3, 4, Heads(2, 2, 5))(torch.rand(7, 3, 3))[0].sum().backward()
 ours = "worlds", "planners", "learned", "bench"
 modules = [module for name, module in sys.modules.items() if name.startswith(ours)]
 kernels = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
+compiled = [each for each in kernels if each.stats.cache_misses] + [each for each in loops if not each.cache_hits]
+read = [each for each in kernels if each.stats.cache_hits] + [each for each in loops if each.cache_hits]
 print(json.dumps({
     "played": sorted({target for target, _ in outcomes}),
     "crashed": sorted({target for target, outcome in outcomes if outcome == "CRASHED"}),
-    "compiled": sorted({f"{each.__module__}.{each.__name__}" for each in kernels if each.stats.cache_misses}),
-    "read from": sorted({each.__module__ for each in kernels if each.stats.cache_hits}),
+    "compiled": sorted({f"{each.__wrapped__.__module__}.{each.__wrapped__.__qualname__}" for each in compiled}),
+    "read from": sorted({each.__wrapped__.__module__ for each in read}),
 }))
 """
 """Plays an episode of each agent in each shipped scenario of drawn maps, learns a little, and says what it compiled."""
