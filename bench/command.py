@@ -1,6 +1,7 @@
 """The command line. Nothing heavy is imported before a command needs it."""
 
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,14 @@ app = typer.Typer(
 
 DONE, CRASHED, WRONG, STOPPED = 0, 1, 2, 130
 """Exit codes: done; finished, but an agent crashed or hung; the command or a file was wrong; stopped by Ctrl-C."""
+
+
+class Device(StrEnum):
+    """Where a network runs."""
+
+    cpu = "cpu"
+    cuda = "cuda"
+
 
 Paths = Annotated[
     list[str] | None,
@@ -107,6 +116,37 @@ def replay(
 
     (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
     typer.echo(replay_recorded(chosen, variant, agent, episode, results / chosen.name, out))
+
+
+@app.command()
+def train(
+    recipe: Annotated[str, typer.Argument(help="A recipe file, or the name of a shipped one (`macn-grid`).")],
+    device: Annotated[Device, typer.Option(help="Where the network runs.")] = Device.cpu,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for what is written. Default: results/training/NAME.", show_default=False),
+    ] = None,
+    batches: Annotated[
+        int | None, typer.Option(min=1, help="Batches, instead of what the recipe says.", show_default=False)
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Instead of the recipe's; NAME becomes NAME-seedN.", show_default=False)
+    ] = None,
+) -> None:
+    """Train a network by a recipe; stopped at any moment, the same command goes on from there to the same weights.
+
+    A recipe names a network, the worlds where it learns, and how; `learned/recipes/` has those of the shipped
+    checkpoints. As it learns, the network is tried on held-out maps: `log.jsonl` has a line for each trial,
+    `learning.png` the curves. The best weights so far are `NAME.safetensors`, with a card beside them that says where
+    they come from; a scenario plays them as `macn: {checkpoint: ./NAME.safetensors}`.
+    """
+    from bench.training import train_recipe
+
+    try:
+        train_recipe(recipe, device.value, out, batches, seed)
+    except KeyboardInterrupt:
+        typer.echo("Stopped. The same command goes on from the last saved state.", err=True)
+        raise typer.Exit(STOPPED) from None
 
 
 @app.command()

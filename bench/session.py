@@ -15,7 +15,7 @@ from bench.playing.pool import cpus
 from bench.playing.provenance import read_run
 from bench.playing.runner import Summary, run
 from bench.progress import Bars
-from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario
+from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario, text_of
 from bench.reporting.report import READS, print_tables, write_report
 from worlds.mistake import Mistake
 from worlds.types import MapError, Outcome
@@ -68,7 +68,7 @@ def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
     scenarios, lines = dict[str, Scenario](), list[str]()
     for path in paths:
         try:
-            scenario = read_scenario(_text(path), path)
+            scenario = read_scenario(text_of(path), path)
         except ScenarioError as error:
             lines += error.lines
             continue
@@ -78,13 +78,6 @@ def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
     if lines:
         raise ScenarioError(lines)
     return [_with_episodes(scenario, episodes) if episodes else scenario for scenario in scenarios.values()]
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ScenarioError([f"{path}: got a file that cannot be read ({error}); expected UTF-8 text."]) from None
 
 
 def _with_episodes(scenario: Scenario, episodes: int) -> Scenario:

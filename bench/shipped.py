@@ -3,7 +3,11 @@
 from difflib import get_close_matches
 from pathlib import Path
 
+import learned
 from worlds.mistake import Mistake
+
+RECIPES = Path(learned.__file__).with_name("recipes")
+"""Where the recipes are that go by a name alone."""
 
 
 def folder() -> Path:
@@ -27,6 +31,23 @@ def find(names: list[str] | None) -> list[Path]:
         for path in _find_one(name):
             found.setdefault(path.resolve(), path)
     return list(found.values())
+
+
+def find_recipe(name: str) -> Path:
+    """The recipe file that a name stands for.
+
+    Raises:
+        Mistake: it stands for nothing; the nearest shipped one is told.
+    """
+    shipped = {file.stem: file for file in sorted(RECIPES.glob("*.yaml"))}
+    path = shipped.get(name, Path(name)) if not Path(name).is_file() else Path(name)
+    if path.is_file():
+        return path
+    near = get_close_matches(name, shipped, n=1)
+    raise Mistake(
+        f"{name}: got no such file; expected a recipe file, or one of {', '.join(shipped)}."
+        + (f" Did you mean {near[0]}?" if near else "")
+    )
 
 
 def _find_one(name: str) -> list[Path]:

@@ -103,11 +103,12 @@ def write(place: Path, network: str, settings: dict[str, Any], weights: dict[str
     """Write a file of weights and its card, each whole or not at all."""
     contents = save({name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()})
     card = Card(network=network, settings=settings, sha256=sha256(contents), training=training)
-    _put(place, contents)
-    _put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
+    put(place, contents)
+    put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
 
 
-def _put(place: Path, contents: bytes) -> None:
+def put(place: Path, contents: bytes) -> None:
+    """Write a whole file or none."""
     aside = place.with_name(f".{place.name}.{os.getpid()}")
     aside.write_bytes(contents)
     aside.replace(place)

@@ -10,6 +10,7 @@ Words used here
 An image is a window around the agent, or the whole map (`Frame`). A goal outside it is moved to its nearest cell.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ import torch
 from torch import Tensor
 
 from worlds.kernel import kernel
-from worlds.types import BLOCKED, FREE, UNKNOWN, Array
+from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Observation
 
 CHANNELS = 3
 """Of an image: free, blocked, goal; a cell that is neither free nor blocked is unknown."""
@@ -81,6 +82,31 @@ class Frame(NamedTuple):
     """Rows and columns of the image."""
     centred: bool
     """Whether the agent is in its middle (`window`); else it is the whole map, from its first cell on (`map`)."""
+
+
+def gather(
+    observations: Sequence[Observation], goals: Sequence[Cell], moves: Sequence[int], maps: Sequence[Array] | None
+) -> Known:
+    """What some agents know.
+
+    Args:
+        observations: what each is told, with views of one size.
+        goals: of each.
+        moves: the last of each, STILL before the first.
+        maps: [H, W] the known map of each, of any size; None: they see their current views alone.
+    """
+    places = np.array([observation.place for observation in observations], np.int64)  # [B, 2]
+    blocked = np.array([observation.blocked for observation in observations])  # [B]
+    if maps is None:
+        cells = np.stack([observation.view for observation in observations])  # [B, K, K]
+        corners = places - cells.shape[1] // 2
+    else:
+        height, width = np.max([known.shape for known in maps], 0)
+        cells = np.full((len(maps), height, width), UNKNOWN, np.uint8)
+        for b, known in enumerate(maps):
+            cells[b, : known.shape[0], : known.shape[1]] = known
+        corners = np.zeros_like(places)
+    return Known(cells, corners, places, np.array(goals, np.int64), np.array(moves, np.int64), blocked)
 
 
 def encode(known: Known, frame: Frame) -> Inputs:

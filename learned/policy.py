@@ -15,7 +15,7 @@ from pydantic import ModelWrapValidatorHandler, ValidationInfo, field_validator,
 from torch import Tensor, nn
 
 from learned import checkpoint
-from learned.encoding import STILL, Frame, Inputs, Known, encode
+from learned.encoding import STILL, Frame, Inputs, encode, gather
 from learned.value_iteration import RewardMap
 from worlds.belief import KnownMap
 from worlds.files import read, sha256
@@ -71,10 +71,18 @@ class Policy(Settings):
             Mistake: a network that was made for maps of one size meets another.
         """
         del rng
+        return PolicyAgent(self, task)
+
+    def frame(self, task: Task) -> Frame:
+        """What the network's image shows of the world of a task.
+
+        Raises:
+            Mistake: a network that was made for maps of one size meets another.
+        """
         extent = int(task.extent[0]), int(task.extent[1])
         if self.reading == "map" and self.size != extent:
             raise Mistake(f"got a map of {extent[0]}x{extent[1]}; expected {self.size[0]}x{self.size[1]}, the size")
-        return PolicyAgent(self, task)
+        return Frame(self.size, self.reading == "window")
 
     def parameter_bytes(self) -> int:
         """The bytes of all weights."""
@@ -152,7 +160,7 @@ class PolicyAgent:
     def __init__(self, settings: Policy, task: Task) -> None:
         """Nothing is remembered yet."""
         self.network = weighted(settings)
-        self.frame = Frame(settings.size, settings.reading == "window")
+        self.frame = settings.frame(task)
         self.device = settings.device
         self.goal: Cell = task.goal
         self.stitched = KnownMap(task.extent) if settings.stitched else None
@@ -161,7 +169,12 @@ class PolicyAgent:
 
     def act(self, observation: Observation) -> Move:
         """One step of the network."""
-        inputs = encode(self._known(observation), self.frame).to(self.device)
+        maps = None
+        if self.stitched:
+            self.stitched.update(observation)
+            maps = [self.stitched.cells]
+        known = gather([observation], [self.goal], [self.move], maps)
+        inputs = encode(known, self.frame).to(self.device)
         with torch.inference_mode():
             scores, self.state = self.network(inputs, self.state)
             self.move = int(scores.argmax())
@@ -176,16 +189,6 @@ class PolicyAgent:
         """There is no search."""
         return 0
 
-    def _known(self, observation: Observation) -> Known:
-        """What this agent knows, as a batch of one."""
-        cells, corner = observation.view, np.array(observation.place, np.int64) - len(observation.view) // 2
-        if self.stitched:
-            self.stitched.update(observation)
-            cells, corner = self.stitched.cells, np.zeros(2, np.int64)
-        places, goals = (np.array([place], np.int64) for place in (observation.place, self.goal))  # [1, 2]
-        moves, blocked = np.array([self.move], np.int64), np.array([observation.blocked])
-        return Known(cells[None], corner[None], places, goals, moves, blocked)
-
 
 def tensors(state: Any) -> Iterator[Tensor]:
     """All tensors of a network's state."""
@@ -194,3 +197,11 @@ def tensors(state: Any) -> Iterator[Tensor]:
     else:
         for part in state:
             yield from tensors(part)
+
+
+def rows(state: Any, kept: Tensor) -> Any:
+    """The state of some samples of a batch: those of the numbers, or of the truth values, in `kept`."""
+    if isinstance(state, Tensor):
+        return state[kept]
+    parts = (rows(part, kept) for part in state)
+    return type(state)(*parts) if hasattr(state, "_fields") else tuple(parts)

@@ -19,7 +19,19 @@ from bench.playing.store import StoreError, put
 from bench.reading.scenario import Scenario
 from worlds.mistake import Mistake
 
-PACKAGES = ("fogbench", "numpy", "numba", "scipy", "networkx", "pandas", "pyarrow", "pydantic", "pebble", "ompl")
+PACKAGES = (
+    "fogbench",
+    "numpy",
+    "numba",
+    "scipy",
+    "networkx",
+    "pandas",
+    "pyarrow",
+    "pydantic",
+    "pebble",
+    "ompl",
+    "torch",
+)
 """Packages whose versions are written down, where they are installed."""
 
 
@@ -68,7 +80,7 @@ def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
     """
     path = folder / "run.json"
     earlier = read_run(folder)["sessions"] if path.exists() else []
-    session = {"started": _now(), "ended": None, "workers": workers, **_circumstances()}
+    session = {"started": _now(), "ended": None, "workers": workers, **circumstances()}
     run = {
         "scenario": scenario.name,
         "path": str(scenario.path),
@@ -92,7 +104,8 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _circumstances() -> dict[str, Any]:
+def circumstances() -> dict[str, Any]:
+    """The command, the commit, the machine and the versions."""
     return {
         "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
         "commit": _commit(),

@@ -1,5 +1,6 @@
 """The variants of a file: each laid over the rest, and what is wrong with all of them told once."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from bench.reading.blocks import near, one_of
@@ -10,19 +11,19 @@ ALONE = "all"
 """The name of the one variant of a file without variants."""
 
 
-def pages(page: Value, faults: list[Fault]) -> dict[str, Value]:
-    """The whole page of each variant, by its name."""
+def pages(page: Value, faults: list[Fault], varied: Sequence[str] = VARIED) -> dict[str, Value]:
+    """The whole page of each variant, by its name; only the keys in `varied` may differ."""
     variants = page.fields().get("variants")
     overlays = variants.fields() if variants else {}
     for overlay in overlays.values():
-        unknown = overlay.fields().keys() - VARIED
-        faults.extend(overlay.wrong_key(key, one_of(VARIED), near(key, VARIED)) for key in unknown)
-    return {name: _lay(page, overlay) for name, overlay in overlays.items()} or {ALONE: page}
+        unknown = overlay.fields().keys() - set(varied)
+        faults.extend(overlay.wrong_key(key, one_of(varied), near(key, varied)) for key in unknown)
+    return {name: _lay(page, overlay, varied) for name, overlay in overlays.items()} or {ALONE: page}
 
 
-def _lay(page: Value, overlay: Value) -> Value:
+def _lay(page: Value, overlay: Value, varied: Sequence[str]) -> Value:
     """The page of one variant: another map family replaces the one of the page, with all its settings."""
-    fields = {key: value for key, value in overlay.fields().items() if key in VARIED}
+    fields = {key: value for key, value in overlay.fields().items() if key in varied}
     here, there = (
         mapping["maps"].fields().keys() if "maps" in mapping else set() for mapping in (page.fields(), fields)
     )

@@ -13,6 +13,10 @@ def _file_name(name: str) -> str:
     return name
 
 
+FileName = Annotated[str, AfterValidator(_file_name)]
+"""A name that a file or a folder can have."""
+
+
 def _infinity(number: Any) -> Any:
     return "inf" if number == ".inf" else number  # as YAML writes it
 
@@ -42,7 +46,7 @@ class Published(Settings):
 class Page(Settings):
     """A scenario: maps, the conditions on them, and the agents that meet there."""
 
-    name: Annotated[str, AfterValidator(_file_name)]
+    name: FileName
     """Its name in tables, and of the folder of its results."""
     about: str = ""
     """One sentence."""

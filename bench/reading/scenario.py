@@ -7,7 +7,7 @@ from typing import Any
 from bench.reading.document import parse
 from bench.reading.overlays import pages, settle, unknown_variants
 from bench.reading.positions import Fault
-from bench.reading.variant import Reading
+from bench.reading.variant import VariantReading
 from worlds.mistake import Mistake
 from worlds.types import AgentSettings, MapFamily
 
@@ -64,6 +64,18 @@ class ScenarioError(Mistake):
         self.lines = lines
 
 
+def text_of(path: Path) -> str:
+    """The text of a file.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError([f"{path}: got a file that cannot be read ({error}); expected UTF-8 text."]) from None
+
+
 def read_scenario(text: str, path: Path) -> Scenario:
     """Read the text of a scenario file.
 
@@ -77,11 +89,11 @@ def read_scenario(text: str, path: Path) -> Scenario:
     faults: list[Fault] = []
     page = parse(text, faults)
     if page is None:
-        raise _error(faults, path)
-    rows = {name: Reading(row, path.parent) for name, row in pages(page, faults).items()}
+        raise wrong(faults, path)
+    rows = {name: VariantReading(row, path.parent) for name, row in pages(page, faults).items()}
     faults += settle([row.faults for row in rows.values()]) + unknown_variants(page, list(rows))
     if faults:
-        raise _error(faults, path)
+        raise wrong(faults, path)
     name, about = (str(value.content) if (value := page.child(key)) else "" for key in ("name", "about"))
     published = next(iter(rows.values())).published
     unset = next((value.unset for value in page.below() if value.unset), "")
@@ -91,12 +103,13 @@ def read_scenario(text: str, path: Path) -> Scenario:
     return Scenario(path, text, name, about, variants, published, "")
 
 
-def _error(faults: list[Fault], path: Path) -> ScenarioError:
+def wrong(faults: list[Fault], path: Path) -> ScenarioError:
+    """All that is wrong with a file, in order and once."""
     lines = [fault.text(str(path)) for fault in sorted(faults, key=lambda fault: (fault.line, fault.column))]
     return ScenarioError(list(dict.fromkeys(lines)))
 
 
-def _variant(name: str, row: Reading) -> Variant:
+def _variant(name: str, row: VariantReading) -> Variant:
     """A variant of which everything could be read."""
     assert row.page is not None
     assert row.family is not None

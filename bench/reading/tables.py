@@ -35,6 +35,7 @@ AGENT = Table(
     ("fogbench.planners", "fogbench.learned"),
     ("kinds", "start", "parameter_bytes"),
 )
+NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "frame"))
 KIND = Table(KINDS, (), ())
 
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}

@@ -1,0 +1,131 @@
+"""A recipe: one YAML file with a scenario's keys for its worlds, a network, and how it is trained."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, cast
+
+from pydantic import Field
+
+from bench.reading.document import parse
+from bench.reading.overlays import pages, settle
+from bench.reading.page import CONDITIONS, FileName
+from bench.reading.positions import Fault, Value, merge
+from bench.reading.reading import Reading, opened
+from bench.reading.scenario import wrong
+from bench.reading.tables import NETWORK
+from learned.recipe import Recipe, Training, Worlds
+from worlds.mistake import Mistake, Unavailable
+from worlds.types import MapFamily
+
+if TYPE_CHECKING:
+    from learned.policy import Policy
+
+VARIED = ("maps", *CONDITIONS)
+"""Keys that a variant may have."""
+
+ELSEWHERE = {"seed": "no seed here; the recipe's own fixes the weights too", "device": "no device here, but --device"}
+"""Settings of a network that a recipe does not give with it."""
+
+
+class RecipePage(Training):
+    """A recipe: a network, the worlds where it learns, and how."""
+
+    name: FileName
+    """Its name, and that of the checkpoint."""
+    about: str = ""
+    """One sentence."""
+    network: dict[str, Any] | str
+    """A learned policy with its settings; a `checkpoint` among them is where it starts from."""
+    maps: dict[str, Any]
+    """One map family with its settings."""
+    sensor: Any = None
+    rules: Any = None
+    tasks: Any = None
+    budget: Any = None
+    variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
+    """Where the network is tried while it learns: name to what differs from where it learns; by default nothing."""
+
+
+class RecipeReading(Reading[RecipePage]):
+    """What the page of a recipe says."""
+
+    def __init__(self, page: Value, folder: Path) -> None:
+        """Read a page; plug-ins, checkpoints and map files are relative to `folder`."""
+        super().__init__(RecipePage, page, folder)
+        network, curriculum = page.child("network"), page.child("curriculum")
+        self.network = self._network(network) if network else None
+        self.easy = self._easy(page.child("maps"), curriculum.child("easy") if curriculum else None)
+
+    def _network(self, item: Value) -> "Policy | None":
+        named = self.named(item, "the name of a network, or one name with its settings")
+        if named is None:
+            return None
+        name, block, wrong_name = named
+        _, found, missing = self.find(NETWORK, name, wrong_name)
+        if missing:
+            self.faults.append(wrong_name(f"a network that is installed; this one {missing}", ""))
+        if found is None:
+            return None
+        self.faults += [block.wrong_key(key, told) for key, told in ELSEWHERE.items() if key in block.fields()]
+        fresh = {"checkpoint": replace(block, content="none")}
+        try:
+            return cast("Policy | None", self.block(found, replace(block, content=fresh | block.fields())))
+        except Unavailable as lack:
+            self.faults.append(block.fields()["checkpoint"].wrong(f"one that is there; {lack}"))
+            return None
+
+    def _easy(self, maps: Value | None, easy: Value | None) -> MapFamily | None:
+        """The family with the settings of the curriculum's beginning; without a curriculum, the family."""
+        if maps is None or easy is None or self.family is None:
+            return self.family
+        (block,) = maps.fields().values()
+        return cast(MapFamily | None, self.block(type(self.family), merge(opened(block), easy)))
+
+
+def read_recipe(text: str, path: Path) -> Recipe:
+    """Read the text of a recipe.
+
+    Args:
+        text: the YAML.
+        path: where it came from; plug-ins, checkpoints and map files are relative to its folder.
+
+    Raises:
+        ScenarioError: all the mistakes of the file.
+        Mistake: an environment variable in it is not set.
+    """
+    faults: list[Fault] = []
+    page = parse(text, faults)
+    if page is None:
+        raise wrong(faults, path)
+    recipe = RecipeReading(page, path.parent)
+    variants = {name: Reading(RecipePage, row, path.parent) for name, row in pages(page, faults, VARIED).items()}
+    faults += settle([recipe.faults, *(variant.faults for variant in variants.values())])
+    if faults:
+        raise wrong(faults, path)
+    if unset := next((value.unset for value in page.below() if value.unset), ""):
+        raise Mistake(f"{path}: got ${{{unset}}}; expected that environment variable to be set.")
+    return _recipe(text, recipe, variants)
+
+
+def _recipe(text: str, recipe: RecipeReading, variants: dict[str, Reading[RecipePage]]) -> Recipe:
+    """A recipe of which everything could be read."""
+    page = recipe.page
+    assert page is not None
+    assert recipe.network is not None
+    assert recipe.easy is not None
+    training = Training(**{name: getattr(page, name) for name in Training.model_fields})
+    return Recipe(
+        name=page.name,
+        about=page.about,
+        text=text,
+        network=recipe.network.model_copy(update={"seed": training.seed}),
+        worlds=_worlds(recipe),
+        easy=recipe.easy,
+        held_out={name: _worlds(variant) for name, variant in variants.items()},
+        training=training,
+    )
+
+
+def _worlds(reading: Reading[RecipePage]) -> Worlds:
+    assert reading.family is not None
+    return Worlds(reading.family, cast(Any, reading.conditions))

@@ -1,0 +1,87 @@
+"""What `fogbench train` does: it reads a recipe, trains, and shows how far it is and what is reached."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from bench.playing.provenance import circumstances
+from bench.reading.recipe import read_recipe
+from bench.reading.scenario import text_of
+from bench.reporting.learning import write_curves
+from bench.shipped import find_recipe
+from learned.recipe import Recipe
+from worlds.mistake import Mistake
+
+if TYPE_CHECKING:
+    from learned.training import Trial
+
+TRAININGS = Path("results/training")
+"""Where trainings are kept."""
+
+
+def train_recipe(said: str, device: str, out: Path | None, batches: int | None, seed: int | None) -> None:
+    """Train by a recipe, or go on where a training was stopped.
+
+    Args:
+        said: the name of a shipped recipe, or a file.
+        device: `cpu` or `cuda`.
+        out: the folder for all that is written; None: one with the recipe's name.
+        batches: in place of what the recipe says.
+        seed: in place of what the recipe says; the name tells it.
+
+    Raises:
+        ScenarioError: all the mistakes of the file.
+        Mistake: there is no such recipe or device, or the folder holds another training.
+    """
+    path = find_recipe(said)
+    recipe = _changed(read_recipe(text_of(path), path), device, batches, seed)
+    from learned.training import Course  # noqa: PLC0415  it loads PyTorch, which a broken recipe need not
+
+    folder, console = out or TRAININGS / recipe.name, Console()
+    course = Course(recipe, folder, circumstances())
+    columns = (
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[loss]}"),
+    )
+    with Progress(TextColumn("{task.description}", markup=False), *columns, console=console) as bars:
+        total, done = recipe.training.batches, course.student.batches
+        bar = bars.add_task(recipe.name, total=total, completed=done, loss="")
+        for news in course.go_on():
+            bars.update(bar, completed=news.batches, loss=f"loss {news.loss:.3f}")
+            if news.trial:
+                _say(_told(news.trial), console)
+                write_curves(course.trials, folder)
+    _say(f"The best weights are in {course.weights}", console)
+
+
+def _changed(recipe: Recipe, device: str, batches: int | None, seed: int | None) -> Recipe:
+    """A recipe with what the command line says in its place."""
+    given: dict[str, Any] = {"batches": batches, "seed": seed}
+    training = recipe.training.model_copy(update={key: value for key, value in given.items() if value is not None})
+    name = recipe.name if seed is None else f"{recipe.name}-seed{seed}"
+    network = recipe.network.model_copy(update={"device": device, "seed": training.seed})
+    if device == "cuda":
+        import torch  # noqa: PLC0415  the network has loaded it
+
+        if not torch.cuda.is_available():
+            raise Mistake("--device: got cuda, but PyTorch finds no CUDA device here; expected cpu.")
+    return replace(recipe, name=name, network=network, training=training)
+
+
+def _told(trial: "Trial") -> str:
+    """A trial in one line."""
+    reached = ", ".join(
+        f"{name}: {score['success']:.1f} % success, {score['test_error']:.1f} % wrong"
+        for name, score in trial["variants"].items()
+    )
+    return f"batch {trial['batch']}: loss {trial['loss']:.3f}; {reached}"
+
+
+def _say(text: str, console: Console) -> None:
+    console.print(text, highlight=False, markup=False, soft_wrap=True)

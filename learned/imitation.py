@@ -1,0 +1,163 @@
+"""Imitation of the planner that has seen the same: a network learns which moves are optimal on its own known map.
+
+It learns where its own decisions lead it (Ross, Gordon & Bagnell 2011, "DAgger"), from fresh maps in every batch. All
+luck of a batch comes from streams of its number, so a training goes on from its weights and that number alone.
+"""
+
+from copy import deepcopy
+from typing import Any, cast
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from learned.curriculum import eased
+from learned.encoding import Inputs
+from learned.policy import Network, weighted
+from learned.recipe import Recipe, Training, Worlds
+from learned.rollout import Episode, Moment, Rollout, greedy, roll
+from worlds.grid import GridWorld
+from worlds.streams import digest, stream
+from worlds.types import Array, MapFamily
+
+OPTIMISERS = {"adam": torch.optim.Adam, "rmsprop": torch.optim.RMSprop}
+
+
+class Student:
+    """A network that learns batch by batch."""
+
+    def __init__(self, recipe: Recipe) -> None:
+        """Before the first batch, with fresh weights or those of the recipe's checkpoint."""
+        self.recipe = recipe
+        self.network = deepcopy(weighted(recipe.network)).requires_grad_(True)
+        self.optimiser = OPTIMISERS[recipe.training.optimiser](self.network.parameters())
+        self.batches = 0
+        """Learned from so far."""
+
+    def learn(self) -> float:
+        """Play one more batch and learn from it; the loss before."""
+        training, done = self.recipe.training, self.batches / self.recipe.training.batches
+        rollout = self._play(done)
+        loss = imitation_loss(rollout)
+        (loss + training.access_decay * access_weight(self.network)).backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), training.clip)
+        for group in self.optimiser.param_groups:
+            group["lr"] = rate(training, done)
+        self.optimiser.step()
+        self.optimiser.zero_grad()
+        self.batches += 1
+        return loss.item()
+
+    def _play(self, done: float) -> Rollout:
+        recipe, training, first = self.recipe, self.recipe.training, self.batches * self.recipe.training.batch
+        until = training.curriculum.until if training.curriculum else 0.0
+        family = eased(recipe.easy, recipe.worlds.family, part(done, until))
+        numbers = range(first, first + training.batch)
+        episodes = draw_episodes(recipe.worlds, "training", training.seed, numbers, family)
+        luck = stream(training.seed, recipe.worlds.family.words(), "training moves", self.batches)
+        network = self.network
+        if training.noise:
+            network = Noisy(network, training.noise, int(digest(training.seed, "noise", self.batches)[:8], 16))
+        first_share, last_share = training.teacher.share
+        share = first_share + part(done, training.teacher.until) * (last_share - first_share)
+        return roll(recipe.network, network, episodes, Explorer(luck, training.batch, share))
+
+
+class Explorer:
+    """Decides while training: in some episodes the teacher, in the others the network, by chance.
+
+    Where the network would run into an obstacle that is in view, the teacher decides too.
+    """
+
+    def __init__(self, luck: np.random.Generator, episodes: int, share: float) -> None:
+        """Draw which of the episodes, `share` of them on average, are the teacher's."""
+        self.luck = luck
+        self.led = luck.random(episodes) < share
+
+    def __call__(self, moment: Moment) -> Array:
+        """The moves [b]; the teacher takes any of the optimal ones."""
+        chances = self.luck.random((2, len(self.led)))[:, moment.episodes]  # [2, b]
+        own = pick(np.exp(moment.scores - moment.scores.max(1, keepdims=True)), chances[0])
+        blocked = ~np.take_along_axis(moment.open, own[:, None], 1)[:, 0]
+        led = (self.led[moment.episodes] | blocked) & moment.optimal.any(1)
+        moves: Array = np.where(led, pick(moment.optimal, chances[1]), own)
+        return moves
+
+
+class Noisy(Network):
+    """A network whose controller's output is remembered with noise."""
+
+    def __init__(self, network: Network, deviation: float, seed: int) -> None:
+        """Share the weights of `network`."""
+        super().__init__()
+        self.network = network
+        self.deviation = deviation
+        self.luck = torch.Generator().manual_seed(seed)
+
+    def blank(self, batch: tuple[int, ...]) -> Any:
+        """The network's."""
+        return self.network.blank(batch)
+
+    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
+        """One step."""
+        scores, state = self.network(inputs, state)
+        if hasattr(state, "hidden"):
+            noise = torch.randn(state.hidden.shape, generator=self.luck).to(state.hidden.device)
+            state = state._replace(hidden=state.hidden + self.deviation * noise)
+        return scores, state
+
+
+def imitation_loss(rollout: Rollout) -> Tensor:
+    """-log of the probability of all optimal moves together; mean over the decisions that have any."""
+    scores, optimal = rollout.scores[rollout.judged], rollout.optimal[rollout.judged]
+    right = scores.masked_fill(~optimal, -torch.inf).logsumexp(1)
+    return (scores.logsumexp(1) - right).sum() / max(1, len(scores))
+
+
+def access_weight(network: Network) -> Tensor:
+    """Sum of the squared weights between a DNC's controller and its memory; 0 without one."""
+    weights = [tensor for name, tensor in network.named_parameters() if name.endswith("interface.weight")]
+    return torch.stack([weight.square().sum() for weight in weights]).sum() if weights else torch.zeros(())
+
+
+def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
+    """How a network does in the held-out episodes of each variant: success and test error [%]."""
+    scores = {}
+    for name, worlds in recipe.held_out.items():
+        numbers = range(recipe.training.validation.episodes)
+        episodes = draw_episodes(worlds, "validation", recipe.training.seed, numbers, worlds.family)
+        with torch.no_grad():
+            rollout = roll(recipe.network, network, episodes, greedy)
+        wrong = float(rollout.wrong().sum() / max(1, int(rollout.judged.sum())))
+        scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
+    return scores
+
+
+def draw_episodes(worlds: Worlds, purpose: str, seed: int, numbers: range, family: MapFamily) -> list[Episode]:
+    """The episodes of some numbers, on maps of `family`; those of another purpose share no luck with them."""
+    words = worlds.family.words()
+    return [
+        Episode(
+            cast(GridWorld, family.sample(stream(seed, words, f"{purpose} map", number), number, worlds.conditions)),
+            stream(seed, words, f"{purpose} luck", number),
+        )
+        for number in numbers
+    ]
+
+
+def pick(weights: Array, chances: Array) -> Array:
+    """For each row of `weights` [b, 4] a column, as likely as it weighs; `chances` [b] are uniform in [0, 1)."""
+    sums = weights.cumsum(1)  # [b, 4]
+    columns: Array = (sums > chances[:, None] * sums[:, -1:]).argmax(1)
+    return columns
+
+
+def part(done: float, until: float) -> float:
+    """How much of a change that lasts until `until` is made, from 0 to 1."""
+    return min(1.0, done / until) if until else 1.0
+
+
+def rate(training: Training, done: float) -> float:
+    """The learning rate: constant over the first half, then falling by the same factor with every batch."""
+    first, last = training.rate
+    return float(first * (last / first) ** max(0.0, 2 * done - 1))

@@ -1,0 +1,139 @@
+"""Episodes side by side: each in a world of its own, with one network for all of them.
+
+Worlds, known maps and what a network sees are those of single episodes. A rollout keeps the way back to the weights,
+unless PyTorch is told not to, so that what was played is learned from as it is.
+
+Words used here
+    B   episodes;  b  those of them that go on
+    n   decisions of all episodes, step by step
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from learned.encoding import SIGHT, STILL, encode, gather
+from learned.policy import Network, Policy, rows
+from planners.optimal import OptimalMoves
+from worlds.belief import KnownMap
+from worlds.grid import GridWorld
+from worlds.types import BLOCKED, DELTAS, FREE, Array, Move, Observation
+
+BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
+
+
+class Moment(NamedTuple):
+    """One step of the episodes that go on."""
+
+    step: int
+    episodes: Array
+    """[b] int64, which they are."""
+    scores: Array
+    """[b, 4] float32, what the network says of the moves."""
+    optimal: Array
+    """[b, 4] bool, the moves that are optimal by what the agent has seen; none where that is undefined."""
+    open: Array
+    """[b, 4] bool, the moves that are not seen to run into an obstacle."""
+
+
+class Chooser(Protocol):
+    """**Protocol:** what decides by the scores of a network."""
+
+    def __call__(self, moment: Moment) -> Array:
+        """The moves [b] int64."""
+
+
+class Rollout(NamedTuple):
+    """All decisions of some episodes."""
+
+    scores: Tensor
+    """[n, 4]"""
+    optimal: Tensor
+    """[n, 4] bool, the moves that are optimal by what the agent had seen; none where that is undefined."""
+    moves: Tensor
+    """[n] int64, what was done."""
+    reached: Array
+    """[B] bool, whether the episode ended at the goal."""
+
+    @property
+    def judged(self) -> Tensor:
+        """[n] bool, the decisions that have an optimal move."""
+        return self.optimal.any(1)
+
+    def wrong(self) -> Tensor:
+        """[n] bool, the decisions that no optimal plan on the agent's own known map would take."""
+        right: Tensor = self.optimal.gather(1, self.moves[:, None])[:, 0]
+        return self.judged & ~right
+
+
+def roll(settings: Policy, network: Network, episodes: Sequence["Episode"], choose: Chooser) -> Rollout:
+    """Play episodes to their ends.
+
+    Raises:
+        Mistake: a network that was made for maps of one size meets another.
+    """
+    (frame,) = {settings.frame(episode.world.task) for episode in episodes}
+    live, state = np.arange(len(episodes)), network.blank((len(episodes),))
+    step, decisions = 0, list[tuple[Tensor, Tensor, Tensor]]()
+    while len(live):
+        playing = [episodes[b] for b in live.tolist()]
+        optimal = np.stack([episode.look() for episode in playing])  # [b, 4]
+        inputs = encode(
+            gather(
+                [episode.observation for episode in playing],
+                [episode.world.task.goal for episode in playing],
+                [episode.move for episode in playing],
+                [episode.known.cells for episode in playing] if settings.stitched else None,
+            ),
+            frame,
+        )
+        beside = inputs.sight[:, BLOCKED - FREE, BESIDE[:, 0], BESIDE[:, 1]].numpy()  # [b, 4]
+        scores, state = network(inputs.to(settings.device), state)
+        moves = choose(Moment(step, live, scores.detach().cpu().numpy(), optimal, beside == 0))
+        decisions.append((scores, torch.from_numpy(optimal), torch.from_numpy(moves)))
+        goes_on = np.array([episode.step(move) for episode, move in zip(playing, moves.tolist(), strict=True)])
+        if not goes_on.all():
+            live, state = live[goes_on], rows(state, torch.from_numpy(goes_on))
+        step += 1
+    scores, optimal_moves, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))
+    device, reached = scores.device, np.array([episode.reached for episode in episodes])
+    return Rollout(scores, optimal_moves.to(device), done.to(device), reached)
+
+
+def greedy(moment: Moment) -> Array:
+    """The moves of the highest scores; of equals, the first: as a policy decides in an episode."""
+    return moment.scores.argmax(1)
+
+
+class Episode:
+    """One world, and what is known of it."""
+
+    observation: Observation
+    """Of the last look."""
+
+    def __init__(self, world: GridWorld, luck: np.random.Generator) -> None:
+        """Before the first step; `luck` is for the sensor and the slip."""
+        self.world = world
+        self.luck = luck
+        self.state = world.reset()
+        self.known = KnownMap(world.task.extent)
+        self.optimal = OptimalMoves(world.task)
+        self.move = STILL
+        self.reached = False
+
+    def look(self) -> Array:
+        """Sense, and write what is seen into the known map: which moves are optimal there, [4] bool."""
+        self.observation = self.world.sense(self.state, self.luck)
+        self.known.update(self.observation)
+        reach = len(self.observation.view) // 2
+        optimal: Array = self.optimal.update(self.known.cells, self.observation.place, reach)
+        return optimal
+
+    def step(self, move: int) -> bool:
+        """Do a move; whether the episode goes on."""
+        step = self.world.step(self.state, Move(move), self.luck)
+        self.state, self.move, self.reached = step.state, move, step.reached
+        return not (step.reached or step.collided or self.state.step >= self.world.task.budget.steps)

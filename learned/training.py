@@ -1,0 +1,151 @@
+"""A whole training: batches, trials on held-out maps, and a state on disk from which it goes on when it was stopped.
+
+In its folder
+    state.pt          all that changes: weights, optimiser, number of batches, what was reached
+    log.jsonl         one line for each trial
+    NAME.safetensors  the best weights so far, with their card beside them
+"""
+
+import io
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import torch
+
+from learned import checkpoint
+from learned.imitation import Student, validate
+from learned.recipe import Recipe
+from worlds.mistake import Mistake
+from worlds.streams import digest
+
+SAVED_EVERY = 120.0
+"""Seconds between two savings, at most; it changes nothing but what a stop can cost."""
+
+UNTRAINED = ("checkpoint", "seed", "device")
+"""Settings of a network that its card does not tell."""
+
+KEPT = ("trials", "losses", "best", "seconds")
+"""What a course remembers beside its student."""
+
+Trial = dict[str, Any]
+"""A line of the log: `batch`, `loss` since the trial before, `seconds`, and `variants` with what each reached."""
+
+
+class News(NamedTuple):
+    """What is told after every batch."""
+
+    batches: int
+    loss: float
+    trial: Trial | None
+
+
+class Course:
+    """A training, from where it was left."""
+
+    def __init__(self, recipe: Recipe, folder: Path, origin: Mapping[str, Any]) -> None:
+        """Start, or go on from the state in `folder`.
+
+        Args:
+            recipe: what is trained, and how.
+            folder: for all that is written; it is made if it is not there.
+            origin: where the weights come from, for their card: commit, machine, versions.
+
+        Raises:
+            Mistake: the folder holds the state of another training.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        self.recipe, self.folder, self.origin = recipe, folder, origin
+        self.student = Student(recipe)
+        self.trials: list[Trial] = []
+        self.losses: list[float] = []  # since the last trial
+        self.best: list[float] = []
+        self.seconds = 0.0
+        if self._state.exists():
+            self._load()
+
+    def go_on(self) -> Iterator[News]:
+        """Train to the end; stopped at any moment, a new course goes on from the last saved state to the same end."""
+        saved = began = perf_counter() - self.seconds
+        while self.student.batches < self.recipe.training.batches:
+            self.losses.append(self.student.learn())
+            loss, tried = self.losses[-1], self._is_due()
+            self.seconds = perf_counter() - began
+            if tried:
+                self._try()
+            if tried or perf_counter() - saved > SAVED_EVERY:
+                self._save()
+                saved = perf_counter()
+            yield News(self.student.batches, loss, self.trials[-1] if tried else None)
+
+    def _is_due(self) -> bool:
+        batches, training = self.student.batches, self.recipe.training
+        return batches % training.validation.every == 0 or batches == training.batches
+
+    def _try(self) -> None:
+        """Try the network; keep its weights if they are the best so far."""
+        variants = validate(self.recipe, self.student.network)
+        loss = sum(self.losses) / len(self.losses)
+        self.losses = []
+        self.trials.append(
+            {"batch": self.student.batches, "loss": loss, "seconds": round(self.seconds, 1), "variants": variants}
+        )
+        reached = [_mean(variants, "success"), -_mean(variants, "test_error")]
+        if reached > self.best:
+            self.best = reached
+            self._keep()
+
+    def _keep(self) -> None:
+        settings = self.recipe.network.model_dump(mode="json", exclude=set(UNTRAINED))
+        training = {
+            "recipe": self.recipe.text,
+            "seed": self.recipe.training.seed,
+            "batches": self.student.batches,
+            "of": self.recipe.training.batches,
+            "variants": self.trials[-1]["variants"],
+            "minutes": round(self.seconds / 60, 1),
+            "device": self.recipe.network.device,
+            "threads": torch.get_num_threads(),
+            **self.origin,
+        }
+        network, weights = type(self.recipe.network).__name__, self.student.network.state_dict()
+        checkpoint.write(self.weights, network, settings, weights, training)
+
+    @property
+    def weights(self) -> Path:
+        """The file of the best weights."""
+        return self.folder / f"{self.recipe.name}{checkpoint.SUFFIX}"
+
+    @property
+    def _state(self) -> Path:
+        return self.folder / "state.pt"
+
+    def _save(self) -> None:
+        state = {
+            "recipe": digest(self.recipe.words()),
+            "network": self.student.network.state_dict(),
+            "optimiser": self.student.optimiser.state_dict(),
+            "batches": self.student.batches,
+            **{name: getattr(self, name) for name in KEPT},
+        }
+        contents = io.BytesIO()
+        torch.save(state, contents)
+        checkpoint.put(self._state, contents.getvalue())
+        lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
+        checkpoint.put(self.folder / "log.jsonl", lines.encode())
+
+    def _load(self) -> None:
+        state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
+        if state["recipe"] != digest(self.recipe.words()):
+            raise Mistake(f"{self.folder}: got a training by another recipe; expected this one's, or a new folder.")
+        self.student.network.load_state_dict(state["network"])
+        self.student.optimiser.load_state_dict(state["optimiser"])
+        self.student.batches = state["batches"]
+        for name in KEPT:
+            setattr(self, name, state[name])
+
+
+def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:
+    return sum(variant[metric] for variant in variants.values()) / len(variants)
