@@ -1,0 +1,184 @@
+"""What a batch teaches, in hand-computed cases, and that a network learns from it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from learned.encoding import Inputs
+from learned.imitation import Explorer, Noisy, Student, access_weight, draw_episodes, imitation_loss, part, pick, rate
+from learned.imitation import validate as tried
+from learned.macn import Macn
+from learned.policy import weighted
+from learned.recipe import Curriculum, Recipe, Training, Validation, Worlds
+from learned.rollout import Episode, Moment, Rollout, roll
+from worlds.blobs import Blobs
+from worlds.types import Array
+
+SMALL = Macn(checkpoint="none", size=(7, 7), features=32, hidden=32, memory_rows=4)
+
+MAPS = Blobs(size=6, obstacles=(2, 6), obstacle_size=(1, 2))
+
+
+@pytest.fixture
+def recipe(conditions: Callable[..., Any]) -> Callable[..., Recipe]:
+    """Makes a recipe on maps of 6x6 cells of the fields of its network and of its training."""
+
+    def make(network: dict[str, Any] | None = None, **fields: Any) -> Recipe:
+        worlds = Worlds(MAPS, conditions(steps=12, radius=2))
+        training = Training(**{"batches": 40, "batch": 16, "validation": Validation(episodes=50), **fields})
+        policy = SMALL.model_copy(update={**(network or {}), "seed": training.seed})
+        return Recipe("small", "", "", policy, worlds, MAPS, {"all": worlds}, training)
+
+    return make
+
+
+def test_the_loss_is_minus_the_logarithm_of_the_optimal_moves_share() -> None:
+    """A half and three quarters of the probability are optimal; the decision without an optimal move does not count."""
+    scores = torch.tensor([[0.0, 0, 0, 0], [np.log(2), np.log(3), np.log(1), np.log(2)], [9, 9, 9, 0]])
+    optimal = torch.tensor([[True, True, False, False], [True, True, True, False], [False] * 4])
+    rollout = Rollout(scores, optimal, torch.tensor([0, 3, 1]), np.array([True]))
+    assert imitation_loss(rollout).item() == pytest.approx((np.log(2) + np.log(4 / 3)) / 2)
+    assert rollout.judged.tolist() == [True, True, False]
+    assert rollout.wrong().tolist() == [False, True, False]
+
+
+def test_a_batch_that_teaches_nothing_has_no_loss() -> None:
+    """Without any optimal move the loss is 0, not a mean of nothing."""
+    rollout = Rollout(
+        torch.ones(2, 4), torch.zeros(2, 4, dtype=torch.bool), torch.zeros(2, dtype=torch.long), np.ones(1)
+    )
+    assert imitation_loss(rollout).item() == 0
+
+
+def test_columns_are_picked_as_they_weigh() -> None:
+    """Chances over the unit interval pick each column for its share of it, and never one without weight."""
+    weights = np.tile([0.0, 1.0, 0.0, 3.0], (1000, 1))
+    picked = pick(weights, np.linspace(0, 1, 1000, endpoint=False))
+    assert np.bincount(picked, minlength=4).tolist() == [0, 250, 0, 750]
+
+
+def moment(count: int, scores: list[float], optimal: list[bool], open_: list[bool]) -> Moment:
+    """The same step of many episodes."""
+    rows = (np.tile(row, (count, 1)) for row in (scores, optimal, open_))
+    return Moment(0, np.arange(count), *rows)
+
+
+def moves_of(share: float, step: Moment) -> Array:
+    """How often each move is chosen."""
+    explorer = Explorer(np.random.default_rng(0), len(step.episodes), share)
+    return np.bincount(explorer(step), minlength=4) / len(step.episodes)
+
+
+def test_the_teacher_takes_any_optimal_move_and_the_network_its_own() -> None:
+    """With a share of a half, half of the episodes follow each."""
+    step = moment(20_000, [-50, -50, 0, 0], [True, True, False, False], [True] * 4)
+    assert moves_of(1, step) == pytest.approx([0.5, 0.5, 0, 0], abs=0.02)
+    assert moves_of(0, step) == pytest.approx([0, 0, 0.5, 0.5], abs=0.02)
+    assert moves_of(0.5, step) == pytest.approx([0.25] * 4, abs=0.02)
+
+
+def test_where_the_network_would_collide_the_teacher_decides() -> None:
+    """A move into an obstacle in view is replaced by an optimal one; where there is none, it stays."""
+    blocked = moment(1000, [-50, -50, 0, 0], [True, False, False, False], [True, True, False, True])
+    assert moves_of(0, blocked) == pytest.approx([0.5, 0, 0, 0.5], abs=0.05)
+    assert moves_of(0, blocked._replace(optimal=np.zeros((1000, 4), np.bool_)))[2] == pytest.approx(0.5, abs=0.05)
+
+
+def test_choices_do_not_depend_on_who_has_ended() -> None:
+    """The episodes that go on meet the chances they would have met."""
+    whole = moment(100, [0, 0, 0, 0], [True] * 4, [True] * 4)
+    some = Moment(0, *(part[::3] for part in whole[1:]))
+    explorers = [Explorer(np.random.default_rng(0), 100, 0.5) for _ in range(2)]
+    assert np.array_equal(explorers[0](whole)[::3], explorers[1](some))
+
+
+def test_the_rate_falls_over_the_second_half() -> None:
+    """It is the first number up to the half, the geometric mean at three quarters, nearly the last at the end."""
+    training = Training(batches=100, rate=(1e-2, 1e-4))
+    assert [rate(training, done) for done in (0, 0.5, 0.75, 1)] == pytest.approx([1e-2, 1e-2, 1e-3, 1e-4])
+
+
+def test_a_change_is_made_by_its_end() -> None:
+    """A change over the first quarter is half made after an eighth; one over nothing is made at once."""
+    assert [part(done, 0.25) for done in (0, 0.125, 0.25, 0.9)] == [0, 0.5, 1, 1]
+    assert part(0, 0) == 1
+
+
+def test_only_the_interface_of_the_memory_is_held_small() -> None:
+    """Its squared weights are summed; a network without a memory has none, and the decay makes them smaller."""
+    network = SMALL.network()
+    interface: Any = network.get_submodule("memory.interface")
+    assert access_weight(network).item() == pytest.approx(
+        float((interface.weight.detach().numpy() ** 2).sum()), rel=1e-5
+    )
+    assert access_weight(SMALL.model_copy(update={"memory": "lstm"}).network()).item() == 0
+
+
+def test_decay_shrinks_the_interface(recipe: Callable[..., Recipe]) -> None:
+    """Ten batches with the decay leave a smaller interface than without it."""
+    sizes = []
+    for decay in (0.0, 0.1):
+        student = Student(recipe(access_decay=decay))
+        for _ in range(10):
+            student.learn()
+        sizes.append(access_weight(student.network).item())
+    assert sizes[1] < 0.98 * sizes[0]
+
+
+def test_noise_is_remembered_and_repeats() -> None:
+    """The controller's output gets noise of the given size, the same for one seed; the scores of the step get none."""
+    network = weighted(SMALL)
+    inputs = Inputs(torch.zeros(500, 3, 7, 7), torch.full((500,), 24), torch.zeros(500, 3, 7, 7), torch.zeros(500, 12))
+    scores, state = network(inputs, network.blank((500,)))
+    noised = [Noisy(network, 0.1, seed)(inputs, network.blank((500,))) for seed in (1, 1, 2)]
+    difference = noised[0][1].hidden - state.hidden
+    assert torch.equal(noised[0][0], scores)
+    assert difference.std().item() == pytest.approx(0.1, rel=0.05)
+    assert torch.equal(noised[0][1].hidden, noised[1][1].hidden)
+    assert not torch.equal(noised[0][1].hidden, noised[2][1].hidden)
+
+
+def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> None:
+    """Episodes of one number differ with their purpose, and repeat with it; the luck differs too."""
+    worlds = recipe().worlds
+    drawn = [draw_episodes(worlds, purpose, 0, range(5), MAPS) for purpose in ("training", "validation", "training")]
+    maps = [[episode.world.blocked for episode in episodes] for episodes in drawn]
+    assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
+    chances = [[episode.luck.random() for episode in episodes] for episodes in drawn]
+    assert chances[0] == chances[2] != chances[1]
+
+
+def test_a_curriculum_is_played_from_its_beginning(
+    recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At first all maps are as empty as the easy family; after its part of the batches they are full."""
+    easy = Blobs(size=6, obstacles=(0, 0), obstacle_size=(1, 1))
+    made = recipe(batches=4, curriculum=Curriculum(easy={}, until=0.5))
+    student, walls = Student(replace(made, easy=easy)), list[float]()
+
+    def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
+        walls.append(float(np.mean([episode.world.blocked.mean() for episode in episodes])))
+        return roll(settings, network, episodes, choose)
+
+    monkeypatch.setattr("learned.imitation.roll", rolled)
+    for _ in range(4):
+        student.learn()
+    assert walls[0] == 0
+    assert walls[0] < walls[1] < min(walls[2:])
+
+
+def test_a_network_learns(recipe: Callable[..., Recipe]) -> None:
+    """A hundred small batches lead a network without memory from failing nearly always to reaching most goals."""
+    student = Student(recipe({"memory": "feedforward"}, batches=100, batch=32, rate=(3e-3, 3e-4)))
+    before = tried(student.recipe, student.network)["all"]
+    losses = [student.learn() for _ in range(100)]
+    after = tried(student.recipe, student.network)["all"]
+    assert before["success"] < 40
+    assert after["success"] > 80
+    assert after["test_error"] < 10 < before["test_error"]
+    assert np.mean(losses[-10:]) < 0.3 * np.mean(losses[:10])
