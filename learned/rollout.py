@@ -105,7 +105,8 @@ def roll(settings: Policy, network: Network, episodes: Sequence["Episode"], choo
 
 def greedy(moment: Moment) -> Array:
     """The moves of the highest scores; of equals, the first: as a policy decides in an episode."""
-    return moment.scores.argmax(1)
+    best: Array = moment.scores.argmax(1)
+    return best
 
 
 class Episode:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 VARIED = ("maps", *CONDITIONS)
 """Keys that a variant may have."""
 
-ELSEWHERE = {"seed": "no seed here; the recipe's own fixes the weights too", "device": "no device here, but --device"}
+ELSEWHERE = {"seed": "the recipe's own seed, which fixes the weights too", "device": "--device on the command line"}
 """Settings of a network that a recipe does not give with it."""
 
 
@@ -53,7 +53,7 @@ class RecipeReading(Reading[RecipePage]):
         """Read a page; plug-ins, checkpoints and map files are relative to `folder`."""
         super().__init__(RecipePage, page, folder)
         network, curriculum = page.child("network"), page.child("curriculum")
-        self.network = self._network(network) if network else None
+        self.network = self._network(network) if network and isinstance(network.content, str | dict) else None
         self.easy = self._easy(page.child("maps"), curriculum.child("easy") if curriculum else None)
 
     def _network(self, item: Value) -> "Policy | None":
@@ -67,9 +67,10 @@ class RecipeReading(Reading[RecipePage]):
         if found is None:
             return None
         self.faults += [block.wrong_key(key, told) for key, told in ELSEWHERE.items() if key in block.fields()]
+        own = {key: value for key, value in block.fields().items() if key not in ELSEWHERE}
         fresh = {"checkpoint": replace(block, content="none")}
         try:
-            return cast("Policy | None", self.block(found, replace(block, content=fresh | block.fields())))
+            return cast("Policy | None", self.block(found, replace(block, content=fresh | own)))
         except Unavailable as lack:
             self.faults.append(block.fields()["checkpoint"].wrong(f"one that is there; {lack}"))
             return None

@@ -1,0 +1,218 @@
+"""Mistakes in recipes are told like those in scenarios; what is right becomes worlds, a network and its training."""
+
+from pathlib import Path
+
+import pytest
+
+import learned
+import worlds
+from bench.reading.recipe import read_recipe
+from bench.reading.scenario import ScenarioError
+from learned.macn import Macn
+from learned.recipe import Teacher, Training
+from worlds.blobs import Blobs
+from worlds.mistake import Mistake
+
+FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
+NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"
+KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, sensor, rules, tasks, budget, variants"
+SETTINGS = f"one of {', '.join(Macn.model_fields)}"
+
+GOOD = """\
+name: small
+about: Small maps.
+network: {macn: {memory: lstm}}
+maps:
+  blobs: {size: 16, obstacles: [0, 12], obstacle_size: [1, 3]}
+sensor: {radius: 3}
+budget: {steps: 40}
+curriculum: {easy: {obstacles: [2, 2]}, until: 0.3}
+teacher: {share: [1, 0.1], until: 0.25}
+batches: 100
+optimiser: adam
+rate: [1e-3, 1e-4]
+variants:
+  32x32: {maps: {blobs: {size: 32}}, budget: {steps: 60}}
+seed: 2
+"""
+
+BROKEN = [
+    ("name: small\n", "", ["1:1  name: got nothing; expected text."]),
+    ("name: small", "name: a/b", ["1:7  name: got a/b; expected a name that a folder can have."]),
+    ("macn:", "mcan:", [f"3:11  network: got mcan; expected {NETWORKS}. Did you mean macn?"]),
+    ("macn:", "astar:", [f"3:11  network: got astar; expected {NETWORKS}."]),
+    ("{macn: {memory: lstm}}", "[macn]", ["3:10  network: got [macn]; expected a mapping or text."]),
+    (
+        "{macn: {memory: lstm}}",
+        "{macn: {}, vin: {}}",
+        ["3:10  network: got {macn: {}, vin: {}}; expected the name of a network, or one name with its settings."],
+    ),
+    (
+        "memory: lstm",
+        "memory: lstn",
+        ["3:26  network.macn.memory: got lstn; expected one of dnc, lstm, feedforward. Did you mean lstm?"],
+    ),
+    (
+        "memory: lstm",
+        "sede: 3",
+        [
+            f"3:18  network.macn: got sede; expected {SETTINGS}. Did you mean seed?",
+        ],
+    ),
+    (
+        "memory: lstm",
+        "seed: 3",
+        ["3:18  network.macn: got seed; expected the recipe's own seed, which fixes the weights too."],
+    ),
+    ("memory: lstm", "device: cuda", ["3:18  network.macn: got device; expected --device on the command line."]),
+    (
+        "memory: lstm",
+        "checkpoint: ./none.safetensors",
+        [
+            (
+                "3:30  network.macn.checkpoint: got ./none.safetensors; "
+                f"expected an existing file (looked for {Path('none.safetensors').absolute()})."
+            ),
+        ],
+    ),
+    (
+        "memory: lstm",
+        "checkpoint: mcan-grid",
+        [
+            (
+                "3:30  network.macn.checkpoint: got mcan-grid; "
+                "expected one that is there; the checkpoint mcan-grid does not exist yet."
+            ),
+        ],
+    ),
+    ("network: {macn: {memory: lstm}}\n", "", ["1:1  network: got nothing; expected a mapping or text."]),
+    ("blobs: {size: 16, ", "blobs: {", ["5:10  maps.blobs.size: got nothing; expected a whole number of at least 2."]),
+    (
+        "  blobs:",
+        "  blob:",
+        [
+            f"5:3  maps: got blob; expected {FAMILIES}. Did you mean blobs?",
+            "14:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
+            "14:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+        ],
+    ),
+    (
+        "maps:\n",
+        "map:\n",
+        [
+            "1:1  maps: got nothing; expected a mapping.",
+            f"4:1  got map; expected one of {KEYS}. Did you mean maps?",
+            "14:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
+            "14:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+        ],
+    ),
+    (
+        "{obstacles: [2, 2]}",
+        "{obstacle: [2, 2]}",
+        [
+            (
+                "8:21  curriculum.easy: got obstacle; "
+                "expected one of size, obstacles, obstacle_size. Did you mean obstacles?"
+            ),
+        ],
+    ),
+    ("[2, 2]", "[3, 2]", ["8:32  curriculum.easy.obstacles: got [3, 2]; expected two numbers, the smaller first."]),
+    ("[2, 2]", "few", ["8:32  curriculum.easy.obstacles: got few; expected two whole numbers of at least 0."]),
+    ("{obstacles: [2, 2]}", "3", ["8:20  curriculum.easy: got 3; expected a mapping."]),
+    ("until: 0.3", "until: 3", ["8:48  curriculum.until: got 3; expected a number from 0 to 1."]),
+    ("share: [1, 0.1]", "share: 1", ["9:18  teacher.share: got 1; expected two numbers from 0 to 1."]),
+    ("share: [1, 0.1]", "share: [1, 2]", ["9:22  teacher.share[1]: got 2; expected a number from 0 to 1."]),
+    ("batches: 100", "batches: 0", ["10:10  batches: got 0; expected a whole number of at least 1."]),
+    (
+        "batches: 100",
+        "minutes: 3",
+        [
+            "1:1  batches: got nothing; expected a whole number of at least 1.",
+            f"10:1  got minutes; expected one of {KEYS}.",
+        ],
+    ),
+    ("adam", "adamw", ["11:12  optimiser: got adamw; expected one of adam, rmsprop. Did you mean adam?"]),
+    ("rate: [1e-3, 1e-4]", "rate: 1e-3", ["12:7  rate: got 1e-3; expected two numbers above 0."]),
+    ("rate: [1e-3, 1e-4]", "rate: [0, 1e-4]", ["12:8  rate[0]: got 0; expected a number above 0."]),
+    (
+        "size: 32",
+        "size: many",
+        ["14:32  variants.32x32.maps.blobs.size: got many; expected a whole number of at least 2."],
+    ),
+    (
+        "32x32: {maps",
+        "32x32: {agents: [astar], maps",
+        ["14:11  variants.32x32: got agents; expected one of maps, sensor, rules, tasks, budget."],
+    ),
+    ("radius: 3", "radius: 0", ["6:18  sensor.radius: got 0; expected a whole number of at least 1."]),
+    (
+        "radius: 3",
+        "radius: ${FOG_NO}",
+        ["6:19  got broken YAML (expected ',' or '}', but got '{'); expected one YAML document."],
+    ),
+    ("seed: 2", "seed: -1", ["15:7  seed: got -1; expected a whole number of at least 0."]),
+    ("seed: 2", "episodes: 3", [f"15:1  got episodes; expected one of {KEYS}."]),
+    ("budget: {steps: 40}\n", "", ["1:1  budget: got nothing; expected a mapping."]),
+    (
+        "optimiser: adam",
+        "validation: {every: 0}",
+        ["11:21  validation.every: got 0; expected a whole number of at least 1."],
+    ),
+]
+
+
+def test_the_recipe_is_read() -> None:
+    """Where it learns, from what maps it starts, where it is tried, and how; the seed is the network's too."""
+    recipe = read_recipe(GOOD, Path("r.yaml"))
+    full = Blobs(size=16, obstacles=(0, 12), obstacle_size=(1, 3))
+    assert recipe.name == "small"
+    assert recipe.network == Macn(checkpoint="none", memory="lstm", seed=2)
+    assert recipe.worlds.family == full
+    assert recipe.worlds.conditions.budget.steps == 40
+    assert recipe.easy == full.model_copy(update={"obstacles": (2, 2)})
+    assert recipe.held_out.keys() == {"32x32"}
+    assert recipe.held_out["32x32"].family == full.model_copy(update={"size": 32})
+    assert recipe.held_out["32x32"].conditions.budget.steps == 60
+    assert recipe.held_out["32x32"].conditions.sensor.radius == 3
+    training = recipe.training
+    assert (training.batches, training.rate, training.seed) == (100, (1e-3, 1e-4), 2)
+    assert training.teacher == Teacher(share=(1, 0.1), until=0.25)
+
+
+def test_little_has_to_be_said() -> None:
+    """Without a curriculum all maps are full ones, and without variants the network is tried where it learns."""
+    maps = "{blobs: {size: 8, obstacles: [0, 2], obstacle_size: [1, 2]}}"
+    text = f"name: least\nnetwork: macn\nmaps: {maps}\nbudget: {{steps: 20}}\nbatches: 3\n"
+    recipe = read_recipe(text, Path("r.yaml"))
+    assert recipe.easy == recipe.worlds.family
+    assert recipe.held_out == {"all": recipe.worlds}
+
+
+@pytest.mark.parametrize(("old", "new", "lines"), BROKEN, ids=range(len(BROKEN)))
+def test_each_mistake_is_told_at_its_place(old: str, new: str, lines: list[str]) -> None:
+    """One line for each, with what was got, what was expected, and the nearest valid name."""
+    assert GOOD.count(old) == 1
+    with pytest.raises(ScenarioError) as caught:
+        read_recipe(GOOD.replace(old, new), Path("r.yaml"))
+    assert caught.value.lines == [f"r.yaml:{line}" for line in lines]
+
+
+def test_a_network_whose_package_is_missing_is_no_skipped_row(tmp_path: Path) -> None:
+    """In a scenario such an agent is skipped; a training cannot do without."""
+    (tmp_path / "mine.py").write_text("import fog_lamp\n")
+    with pytest.raises(ScenarioError) as caught:
+        read_recipe(GOOD.replace("{macn: {memory: lstm}}", "./mine.py:Mine"), tmp_path / "r.yaml")
+    missing = "needs the package fog_lamp, which is not installed"
+    expected = f"expected a network that is installed; this one {missing}."
+    assert caught.value.lines == [f"{tmp_path / 'r.yaml'}:3:10  network: got ./mine.py:Mine; {expected}"]
+
+
+def test_a_variable_that_is_not_set_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A recipe cannot be skipped like a scenario."""
+    monkeypatch.delenv("FOG_RADIUS", raising=False)
+    text = GOOD.replace("radius: 3", 'radius: "${FOG_RADIUS}"')
+    with pytest.raises(Mistake) as caught:
+        read_recipe(text, Path("r.yaml"))
+    assert str(caught.value) == "r.yaml: got ${FOG_RADIUS}; expected that environment variable to be set."
+    monkeypatch.setenv("FOG_RADIUS", "2")
+    assert read_recipe(text, Path("r.yaml")).worlds.conditions.sensor.radius == 2

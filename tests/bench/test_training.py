@@ -1,0 +1,112 @@
+"""`fogbench train`, as a user meets it, and the curves it draws."""
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from bench.command import main
+from bench.reporting.learning import curves
+from bench.shipped import RECIPES
+
+Fogbench = Callable[..., tuple[int, str, str]]
+
+RECIPE = """\
+name: small
+network: {vin: {size: [5, 5], iterations: 2}}
+maps: {blobs: {size: 6, obstacles: [0, 2], obstacle_size: [1, 2]}}
+budget: {steps: 8}
+batches: 4
+batch: 2
+validation: {episodes: 3, every: 2}
+variants: {few: {}, many: {maps: {blobs: {obstacles: [3, 5]}}}}
+"""
+
+
+@pytest.fixture
+def train(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Fogbench:
+    """Gives the command its arguments in a folder with a recipe: exit code, output, errors."""
+    monkeypatch.chdir(tmp_path)
+    Path("small.yaml").write_text(RECIPE)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["fogbench", "train", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        said = capsys.readouterr()
+        return int(end.value.code or 0), said.out, said.err
+
+    return run
+
+
+def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
+    """Each trial is a line on the screen and in the log; a second command has nothing left to do."""
+    code, out, _ = train("small.yaml")
+    folder = Path("results/training/small")
+    assert code == 0
+    assert out.count("% success") == 4
+    assert f"The best weights are in {folder}/small.safetensors" in out
+    assert {file.name for file in folder.iterdir()} == {
+        *("small.safetensors", "small.json", "state.pt", "log.jsonl", "learning.png"),
+    }
+    log = [json.loads(line) for line in (folder / "log.jsonl").read_text().splitlines()]
+    assert [trial["batch"] for trial in log] == [2, 4]
+    assert f"batch 4: loss {log[1]['loss']:.3f}; few: {log[1]['variants']['few']['success']:.1f} % success" in out
+    with Image.open(folder / "learning.png") as picture:
+        assert min(picture.size) > 100
+    assert "% success" not in train("small.yaml")[1]
+
+
+def test_the_command_line_comes_before_the_recipe(train: Fogbench) -> None:
+    """Batches and seed are what the command says, and its card says so; another seed has another name."""
+    assert train("small.yaml", "--batches", "1", "--seed", "5")[0] == 0
+    card = json.loads(Path("results/training/small-seed5/small-seed5.json").read_text())["training"]
+    assert (card["batches"], card["of"], card["seed"], card["device"]) == (1, 1, 5, "cpu")
+    assert card["commit"] is None or len(card["commit"]) >= 40
+    assert card["cpu"]
+
+
+def test_a_folder_of_another_training_is_refused(train: Fogbench) -> None:
+    """In one line, with exit code 2."""
+    train("small.yaml", "--out", "mine", "--batches", "1")
+    code, _, err = train("small.yaml", "--out", "mine")
+    assert (code, err) == (2, "mine: got a training by another recipe; expected this one's, or a new folder.\n")
+
+
+def test_mistakes_are_lines(train: Fogbench) -> None:
+    """No such recipe, and a recipe with a mistake."""
+    shipped = ", ".join(file.stem for file in sorted(RECIPES.glob("*.yaml")))
+    code, _, err = train("macn-gird")
+    assert code == 2
+    assert err == (
+        f"macn-gird: got no such file; expected a recipe file, or one of {shipped}. Did you mean macn-grid?\n"
+    )
+    Path("small.yaml").write_text(RECIPE.replace("batch: 2", "batch: two"))
+    assert train("small.yaml")[::2] == (
+        2,
+        "small.yaml:6:8  batch: got two; expected a whole number of at least 1.\n",
+    )
+
+
+def test_a_device_that_is_not_there_is_told(train: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before anything is written."""
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    code, _, err = train("small.yaml", "--device", "cuda")
+    assert (code, err) == (2, "--device: got cuda, but PyTorch finds no CUDA device here; expected cpu.\n")
+    assert not Path("results").exists()
+
+
+def test_curves_are_the_trials() -> None:
+    """One panel for test error and one for success; one line for each variant, with a point for each trial."""
+    trials = [
+        {"batch": batch, "variants": {name: {"success": batch + k, "test_error": 50 - batch - k}
+         for k, name in enumerate("ab")}}
+        for batch in (10, 20)
+    ]  # fmt: skip
+    errors, successes = curves(trials).axes
+    assert [line.get_label() for line in errors.lines] == ["a", "b"]
+    assert [line.get_xydata().tolist() for line in errors.lines] == [[[10, 40], [20, 30]], [[10, 39], [20, 29]]]
+    assert [line.get_xydata().tolist() for line in successes.lines] == [[[10, 10], [20, 20]], [[10, 11], [20, 21]]]
