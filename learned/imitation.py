@@ -4,7 +4,6 @@ It learns where its own decisions lead it (Ross, Gordon & Bagnell 2011, "DAgger"
 luck of a batch comes from streams of its number, so a training goes on from its weights and that number alone.
 """
 
-from copy import deepcopy
 from typing import Any, cast
 
 import numpy as np
@@ -13,7 +12,7 @@ from torch import Tensor
 
 from learned.curriculum import eased
 from learned.encoding import Inputs
-from learned.policy import Network, weighted
+from learned.policy import Network, load
 from learned.recipe import Recipe, Training, Worlds
 from learned.rollout import Episode, Moment, Rollout, greedy, roll
 from worlds.grid import GridWorld
@@ -29,7 +28,7 @@ class Student:
     def __init__(self, recipe: Recipe) -> None:
         """Before the first batch, with fresh weights or those of the recipe's checkpoint."""
         self.recipe = recipe
-        self.network = deepcopy(weighted(recipe.network)).requires_grad_(True)
+        self.network = load(recipe.network)
         self.optimiser = OPTIMISERS[recipe.training.optimiser](self.network.parameters())
         self.batches = 0
         """Learned from so far."""

@@ -134,9 +134,8 @@ class Policy(Settings):
         return card.settings
 
 
-@lru_cache(maxsize=64)
-def weighted(settings: Policy) -> Network:
-    """The network of some settings, with its weights, on its device; made once in a process.
+def load(settings: Policy) -> Network:
+    """A network of some settings, with its weights, on its device, that can be trained.
 
     Raises:
         Mistake: the checkpoint is broken or does not fit.
@@ -147,7 +146,17 @@ def weighted(settings: Policy) -> Network:
     if settings.checkpoint != NONE:
         place = checkpoint.place_of(settings.checkpoint)
         checkpoint.read_weights(place, checkpoint.read_card(place), network)
-    network.requires_grad_(False).to(settings.device)
+    return network.to(settings.device)
+
+
+@lru_cache(maxsize=64)
+def weighted(settings: Policy) -> Network:
+    """The network of some settings as it decides; made once in a process.
+
+    Raises:
+        Mistake: the checkpoint is broken or does not fit.
+    """
+    network = load(settings).requires_grad_(False)
     for part in network.modules():
         if isinstance(part, RewardMap):
             part.settle()

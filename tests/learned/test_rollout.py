@@ -1,7 +1,6 @@
 """A batch of episodes, held against the harness that plays them one by one."""
 
 from collections.abc import Callable
-from copy import deepcopy
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from bench.playing import loop
 from bench.playing.judge import GridJudge
 from learned.cnn_memory import CnnMemory
 from learned.macn import Macn
-from learned.policy import Policy, PolicyAgent, weighted
+from learned.policy import Policy, PolicyAgent, load, weighted
 from learned.rollout import Episode, Moment, Rollout, greedy, roll
 from learned.vin import Vin
 from worlds.blobs import Blobs
@@ -150,7 +149,7 @@ def test_a_greedy_batch_decides_as_the_policy_does(
 def test_the_gradient_of_a_batch_is_that_of_its_episodes(conditions: Callable[..., Any], policy: Policy) -> None:
     """Episodes that end, and leave the batch, neither lose their own gradient nor change that of others."""
     worlds = worlds_of(conditions, RULES[0], 4)
-    network = deepcopy(weighted(policy)).double().requires_grad_(True)
+    network = load(policy).double()
 
     def gradient(numbers: list[int]) -> list[torch.Tensor]:
         episodes = [Episode(worlds[k], luck(k)) for k in numbers]
