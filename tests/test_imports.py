@@ -45,8 +45,8 @@ def test_heavy_packages_would_be_noticed() -> None:
 
 @pytest.mark.parametrize(
     "code",
-    ["import bench.command", told("--help"), told("list"), told("run", "--help")],
-    ids=["import", "--help", "list", "run --help"],
+    ["import bench.command", told("--help"), told("list"), told("run", "--help"), told("train", "--help")],
+    ids=["import", "--help", "list", "run --help", "train --help"],
 )
 def test_the_command_line_loads_nothing_heavy(code: str) -> None:
     """Help and lists come at once: no torch, OMPL, MuJoCo, Numba or matplotlib."""
