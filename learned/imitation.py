@@ -4,6 +4,7 @@ It learns where its own decisions lead it (Ross, Gordon & Bagnell 2011, "DAgger"
 luck of a batch comes from streams of its number, so a training goes on from its weights and that number alone.
 """
 
+from collections.abc import Mapping
 from typing import Any, cast
 
 import numpy as np
@@ -46,6 +47,17 @@ class Student:
         self.optimiser.zero_grad()
         self.batches += 1
         return loss.item()
+
+    def state(self) -> dict[str, Any]:
+        """All of it that changes."""
+        weights, optimiser = self.network.state_dict(), self.optimiser.state_dict()
+        return {"network": weights, "optimiser": optimiser, "batches": self.batches}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Become as it was."""
+        self.network.load_state_dict(state["network"])
+        self.optimiser.load_state_dict(state["optimiser"])
+        self.batches = state["batches"]
 
     def _play(self, done: float) -> Rollout:
         recipe, training, first = self.recipe, self.recipe.training, self.batches * self.recipe.training.batch

@@ -15,7 +15,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from learned.encoding import SIGHT, STILL, encode, gather
+from learned.encoding import SIGHT, STILL, Known, encode, gather
 from learned.policy import Network, Policy, rows
 from planners.optimal import OptimalMoves
 from worlds.belief import KnownMap
@@ -77,30 +77,30 @@ def roll(settings: Policy, network: Network, episodes: Sequence["Episode"], choo
     """
     (frame,) = {settings.frame(episode.world.task) for episode in episodes}
     live, state = np.arange(len(episodes)), network.blank((len(episodes),))
-    step, decisions = 0, list[tuple[Tensor, Tensor, Tensor]]()
+    decisions: list[tuple[Tensor, Tensor, Tensor]] = []
     while len(live):
         playing = [episodes[b] for b in live.tolist()]
         optimal = np.stack([episode.look() for episode in playing])  # [b, 4]
-        inputs = encode(
-            gather(
-                [episode.observation for episode in playing],
-                [episode.world.task.goal for episode in playing],
-                [episode.move for episode in playing],
-                [episode.known.cells for episode in playing] if settings.stitched else None,
-            ),
-            frame,
-        )
+        inputs = encode(_known(playing, settings.stitched), frame)
         beside = inputs.sight[:, BLOCKED - FREE, BESIDE[:, 0], BESIDE[:, 1]].numpy()  # [b, 4]
         scores, state = network(inputs.to(settings.device), state)
-        moves = choose(Moment(step, live, scores.detach().cpu().numpy(), optimal, beside == 0))
+        moves = choose(Moment(len(decisions), live, scores.detach().cpu().numpy(), optimal, beside == 0))
         decisions.append((scores, torch.from_numpy(optimal), torch.from_numpy(moves)))
         goes_on = np.array([episode.step(move) for episode, move in zip(playing, moves.tolist(), strict=True)])
         if not goes_on.all():
             live, state = live[goes_on], rows(state, torch.from_numpy(goes_on))
-        step += 1
-    scores, optimal_moves, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))
-    device, reached = scores.device, np.array([episode.reached for episode in episodes])
-    return Rollout(scores, optimal_moves.to(device), done.to(device), reached)
+    scores, right, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))  # [n, 4], [n, 4], [n]
+    reached = np.array([episode.reached for episode in episodes])
+    return Rollout(scores, right.to(scores.device), done.to(scores.device), reached)
+
+
+def _known(episodes: Sequence["Episode"], stitched: bool) -> Known:
+    return gather(
+        [episode.observation for episode in episodes],
+        [episode.world.task.goal for episode in episodes],
+        [episode.move for episode in episodes],
+        [episode.known.cells for episode in episodes] if stitched else None,
+    )
 
 
 def greedy(moment: Moment) -> Array:

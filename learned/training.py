@@ -68,7 +68,7 @@ class Course:
 
     def go_on(self) -> Iterator[News]:
         """Train to the end; stopped at any moment, a new course goes on from the last saved state to the same end."""
-        saved = began = perf_counter() - self.seconds
+        began, saved = perf_counter() - self.seconds, perf_counter()
         while self.student.batches < self.recipe.training.batches:
             self.losses.append(self.student.learn())
             loss, tried = self.losses[-1], self._is_due()
@@ -125,9 +125,7 @@ class Course:
     def _save(self) -> None:
         state = {
             "recipe": digest(self.recipe.words()),
-            "network": self.student.network.state_dict(),
-            "optimiser": self.student.optimiser.state_dict(),
-            "batches": self.student.batches,
+            **self.student.state(),
             **{name: getattr(self, name) for name in KEPT},
         }
         contents = io.BytesIO()
@@ -140,9 +138,7 @@ class Course:
         state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
         if state["recipe"] != digest(self.recipe.words()):
             raise Mistake(f"{self.folder}: got a training by another recipe; expected this one's, or a new folder.")
-        self.student.network.load_state_dict(state["network"])
-        self.student.optimiser.load_state_dict(state["optimiser"])
-        self.student.batches = state["batches"]
+        self.student.restore(state)
         for name in KEPT:
             setattr(self, name, state[name])
 

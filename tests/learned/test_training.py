@@ -98,7 +98,7 @@ def left_at(folder: Path) -> int:
 
 def start(folder: Path) -> subprocess.Popen[bytes]:
     """The command, in a process of its own."""
-    (folder / "tiny.yaml").write_text(TEXT.replace("BATCHES", "60"))
+    (folder / "tiny.yaml").write_text(TEXT.replace("BATCHES", "30"))
     command = [sys.executable, "-m", "bench", "train", "tiny.yaml", "--out", "out"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}  # for two at once
     return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL)
@@ -115,7 +115,7 @@ def test_a_killed_training_ends_with_the_same_weights(tmp_path: Path) -> None:
         time.sleep(0.002)
     killed.kill()
     killed.wait()
-    assert left_at(folders[1] / "out") < 60
+    assert left_at(folders[1] / "out") < 30
     again = start(folders[1])
     assert (undisturbed.wait(), again.wait()) == (0, 0)
     assert left(folders[1] / "out") == left(folders[0] / "out")
