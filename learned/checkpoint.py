@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,9 @@ SHIPPED = Path(__file__).with_name("checkpoints")
 
 SUFFIX = ".safetensors"
 
+NONE = "none"
+"""In the place of a checkpoint: fresh weights."""
+
 
 class Card(BaseModel):
     """What a checkpoint says of itself."""
@@ -35,25 +39,37 @@ class Card(BaseModel):
     """How it was made, and what it reached."""
 
 
-def place_of(checkpoint: str, folder: Path = Path()) -> Path:
-    """The file of weights of a checkpoint.
+def located(checkpoint: str, folder: Path) -> str:
+    """A checkpoint by its name or by the whole path of its file.
 
     Args:
-        checkpoint: the name of a shipped one, or a file that ends in `.safetensors`.
+        checkpoint: `none`, the name of a shipped one, or a file that ends in `.safetensors`.
         folder: a relative file starts there.
 
     Raises:
+        Mistake: it is nothing of these, or there is no such file.
+    """
+    if not checkpoint.endswith(SUFFIX):
+        if not re.fullmatch(r"[\w-]+", checkpoint):
+            raise Mistake(f"{NONE}, the name of a shipped checkpoint, or a file that ends in {SUFFIX}")
+        return checkpoint
+    place = (folder / checkpoint).absolute()
+    if not os.path.isfile(place):  # noqa: PTH113  it takes any path
+        raise Mistake(f"an existing file (looked for {place})")
+    return str(place)
+
+
+def place_of(checkpoint: str) -> Path:
+    """The file of weights of a checkpoint that was `located`.
+
+    Raises:
         Unavailable: no checkpoint of that name is shipped yet.
-        Mistake: there is no such file.
     """
     if checkpoint.endswith(SUFFIX):
-        place = (folder / checkpoint).absolute()
-        if not place.exists():
-            raise Mistake(f"an existing file (looked for {place})")
-        return place
+        return Path(checkpoint)
     place = SHIPPED / f"{checkpoint}{SUFFIX}"
     if not place.exists():
-        names = sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))
+        names = [NONE, *sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))]
         near = "".join(f"; did you mean {name}?" for name in get_close_matches(checkpoint, names, n=1))
         raise Unavailable(f"the checkpoint {checkpoint} does not exist yet{near}")
     return place
@@ -68,13 +84,19 @@ def read_card(place: Path) -> Card:
     card = place.with_suffix(".json")
     try:
         return Card.model_validate_json(card.read_text("utf-8"))
-    except OSError:
+    except FileNotFoundError:
         raise Mistake(f"a checkpoint with its card (there is no {card.name} beside {place.name})") from None
     except ValidationError as error:
-        detail = error.errors()[0]
-        where = ".".join(map(str, detail["loc"]))
-        told = f"{where}: {detail['msg']}" if where else detail["msg"]
-        raise Mistake(f"a checkpoint whose card can be read ({card.name}: {told})") from None
+        raise Mistake(f"a checkpoint whose card can be read ({card.name}: {first_of(error)})") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise Mistake(f"a checkpoint whose card can be read ({card.name}: {error})") from None
+
+
+def first_of(error: ValidationError) -> str:
+    """The first of its mistakes."""
+    detail = error.errors()[0]
+    where = ".".join(map(str, detail["loc"]))
+    return f"{where}: {detail['msg']}" if where else detail["msg"]
 
 
 def read_weights(place: Path, card: Card, network: nn.Module) -> None:
@@ -83,19 +105,23 @@ def read_weights(place: Path, card: Card, network: nn.Module) -> None:
     Raises:
         Mistake: the file is not the one that its card was written for, or it does not fit the network.
     """
-    contents = place.read_bytes()
+    try:
+        contents = place.read_bytes()
+    except OSError as error:
+        raise Mistake(f"a checkpoint that can be read ({place.name}: {error.strerror})") from None
     if sha256(contents) != card.sha256:
         raise Mistake(f"a checkpoint that is whole ({place.name} is not the file that its card was written for)")
     try:
         weights = load(contents)
-    except SafetensorError as error:
+    except (SafetensorError, KeyError) as error:
         raise Mistake(f"a file of weights ({place.name}: {error})") from None
-    wanted = {name: tuple(tensor.shape) for name, tensor in network.state_dict().items()}
-    found = {name: tuple(tensor.shape) for name, tensor in weights.items()}
-    for name in sorted(wanted.keys() | found.keys()):
-        if wanted.get(name) != found.get(name):
-            shapes = f"{name} is {_told(found.get(name))} there, {_told(wanted.get(name))} here"
-            raise Mistake(f"a checkpoint that fits its card ({place.name}: {shapes})")
+    wanted = network.state_dict()
+    for name in sorted(wanted.keys() | weights.keys()):
+        here, there = _told(wanted.get(name)), _told(weights.get(name))
+        if here != there:
+            raise Mistake(f"a checkpoint that fits its card ({place.name}: {name} is {there} there, {here} here)")
+        if not weights[name].isfinite().all():
+            raise Mistake(f"a checkpoint of numbers ({place.name}: {name} has some that are none)")
     network.load_state_dict(weights)
 
 
@@ -114,5 +140,5 @@ def put(place: Path, contents: bytes) -> None:
     aside.replace(place)
 
 
-def _told(shape: tuple[int, ...] | None) -> str:
-    return "missing" if shape is None else f"[{', '.join(map(str, shape))}]"
+def _told(tensor: Tensor | None) -> str:
+    return "missing" if tensor is None else f"{str(tensor.dtype).removeprefix('torch.')} {list(tensor.shape)}"

@@ -7,14 +7,14 @@ from torch import Tensor, nn
 
 from learned.encoding import CHANNELS, Inputs
 from learned.memory import Remembering, RememberingNetwork
+from learned.policy import Size
 from learned.value_iteration import ACTIONS
-from worlds.settings import Positive
 
 
 class CnnMemory(Remembering):
     """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
 
-    channels: Positive = 32
+    channels: Size = 32
     """Of the first three convolutions; the last has as many as there are moves, like Q."""
 
     def network(self) -> "CnnMemoryNetwork":

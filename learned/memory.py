@@ -9,9 +9,8 @@ from learned.dnc import DNC
 from learned.dnc_access import Heads
 from learned.dnc_controller import Controller
 from learned.encoding import COMPASS, SEEN, Inputs
-from learned.policy import Network, Policy
+from learned.policy import Network, Policy, Size
 from learned.value_iteration import ACTIONS
-from worlds.settings import Positive
 
 
 class Remembering(Policy):
@@ -19,17 +18,17 @@ class Remembering(Policy):
 
     memory: Literal["dnc", "lstm", "feedforward"] = "dnc"
     """A DNC, the LSTM of its controller alone, or, as an ablation, a layer that remembers nothing."""
-    features: Positive = 256
+    features: Size = 256
     """Numbers that the memory is told at a step."""
-    hidden: Positive = 256
+    hidden: Size = 256
     """The controller's size."""
-    memory_rows: Positive = 32
+    memory_rows: Size = 32
     """Rows of a DNC's memory; they may differ from the training's."""
-    word: Positive = 8
+    word: Size = 8
     """Numbers in a row."""
-    reads: Positive = 4
+    reads: Size = 4
     """Read heads of a DNC."""
-    writes: Positive = 1
+    writes: Size = 1
     """Write heads of a DNC."""
     links: bool = True
     """Whether a DNC keeps temporal links."""

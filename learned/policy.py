@@ -7,24 +7,31 @@ unless no weight depends on it (`FREE`).
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 import torch
-from pydantic import ModelWrapValidatorHandler, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 from torch import Tensor, nn
 
 from learned import checkpoint
+from learned.checkpoint import NONE, Card
 from learned.encoding import STILL, Frame, Inputs, encode, gather
 from learned.value_iteration import RewardMap
 from worlds.belief import KnownMap
-from worlds.files import read, sha256
 from worlds.mistake import Mistake
-from worlds.settings import Count, Positive, Settings
+from worlds.settings import Settings
 from worlds.types import Cell, Move, Observation, Task
 
-NONE = "none"
-"""In the place of a checkpoint: fresh weights."""
+Size = Annotated[int, Field(ge=1, le=1024)]
+"""Of a part of a network."""
 
 FREE = frozenset({"checkpoint", "seed", "device", "iterations", "memory_rows"})
 """Settings that may differ from those of the training."""
@@ -49,16 +56,19 @@ class Policy(Settings):
 
     checkpoint: str
     """The name of a shipped checkpoint, a file that ends in `.safetensors`, or `none` for fresh weights."""
-    seed: Count = 0
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     """Of fresh weights."""
     device: Literal["cpu", "cuda"] = "cpu"
     """Where the network runs."""
     reading: Literal["window", "map"] = "window"
     """What the network plans on: a window around the agent, or the whole map, which ties it to one size."""
-    size: tuple[Positive, Positive] = (11, 11)
+    size: tuple[Size, Size] = (11, 11)
     """Rows and columns of that window or map."""
     stitched: bool = False
     """Whether it sees the map known so far; else, the current view alone."""
+
+    _weights: str = ""
+    """The digest of the checkpoint's weights as they were when these settings were read."""
 
     def network(self) -> Network:
         """A network with weights drawn anew."""
@@ -90,16 +100,12 @@ class Policy(Settings):
 
     def words(self) -> str:
         """The settings, and the digest of the weights in place of where they are."""
-        digest = "" if self.checkpoint == NONE else sha256(read(checkpoint.place_of(self.checkpoint)))
-        return f"{type(self).__name__} {self.model_dump_json(exclude={'checkpoint'})} weights={digest}"
+        return f"{type(self).__name__} {self.model_dump_json(exclude={'checkpoint'})} weights={self._weights}"
 
     @field_validator("checkpoint")
     @classmethod
     def _found(cls, name: str, info: ValidationInfo) -> str:
-        if name == NONE:
-            return name
-        place = checkpoint.place_of(name, Path((info.context or {}).get("folder", "")))
-        return str(place) if name.endswith(checkpoint.SUFFIX) else name
+        return checkpoint.located(name, Path((info.context or {}).get("folder", "")))
 
     @field_validator("device")
     @classmethod
@@ -112,22 +118,35 @@ class Policy(Settings):
     @classmethod
     def _as_trained(cls, block: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         settings = handler(block)
-        if isinstance(block, dict) and settings.checkpoint != NONE:
-            settings = handler(settings.of_training() | block)
+        if settings.checkpoint != NONE and isinstance(block, dict):
+            card = checkpoint.read_card(checkpoint.place_of(settings.checkpoint))
+            settings = handler(settings.of_training(card) | block)
+            settings._weights = card.sha256  # noqa: SLF001  its own
         weighted(settings)  # whatever is wrong with the weights is told now
         return settings
 
-    def of_training(self) -> dict[str, Any]:
-        """The settings on the checkpoint's card.
+    def trained(self) -> dict[str, Any]:
+        """The settings that a card of these weights has."""
+        return self.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
+
+    def of_training(self, card: Card) -> dict[str, Any]:
+        """The settings on a card.
 
         Raises:
             Mistake: it is the card of another network, or differs from these settings where it must not.
         """
-        card, said = checkpoint.read_card(checkpoint.place_of(self.checkpoint)), self.model_dump(mode="json")
+        said = self.trained()
         if card.network != type(self).__name__:
             raise Mistake(f"a checkpoint of {type(self).__name__} (this is one of {card.network})")
-        if unknown := sorted(card.settings.keys() - said.keys()):
-            raise Mistake(f"a checkpoint of this version (its card has {unknown[0]}, which is no setting)")
+        if odd := sorted(card.settings.keys() ^ said.keys()):
+            how = "has" if odd[0] in card.settings else "lacks"
+            raise Mistake(f"a checkpoint of this version (its card {how} {odd[0]})")
+        try:
+            read = type(self).model_validate({**card.settings, "checkpoint": NONE}).trained()
+        except ValidationError as error:
+            raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
+        if bent := [name for name, value in card.settings.items() if read[name] != value]:
+            raise Mistake(f"a checkpoint whose card can be read ({bent[0]}: {card.settings[bent[0]]!r})")
         for name in sorted(self.model_fields_set & card.settings.keys() - FREE):
             if said[name] != card.settings[name]:
                 raise Mistake(f"{name} {card.settings[name]}, with which the checkpoint was trained")

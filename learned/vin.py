@@ -3,20 +3,21 @@
 With `stitched: true` it plans on the map known so far (Khan et al. 2018, appendix B.1).
 """
 
-from typing import cast
+from typing import Annotated, cast
 
+from pydantic import Field
 from torch import Tensor, nn
 
 from learned.encoding import CHANNELS, Inputs
 from learned.policy import Network, Policy
 from learned.value_iteration import ACTIONS, ValueIteration
-from worlds.settings import Positive, Probability
+from worlds.settings import Probability
 
 
 class Planning(Policy):
     """A policy with a VI module."""
 
-    iterations: Positive = 16
+    iterations: Annotated[int, Field(ge=1, le=1000)] = 16
     """K of the VI module."""
     discount: Probability | None = None
     """None leaves the value's kernels free, as in the paper; a number makes each a distribution times it."""

@@ -10,6 +10,7 @@ import pickle
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from hashlib import sha256
 from inspect import getfile
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -26,6 +27,9 @@ from worlds.streams import digest
 F = TypeVar("F", bound=Callable[..., Any])
 
 HERE = Path(__file__).parent
+
+DIGEST = 32
+"""Bytes of a digest, which a compiled form stands behind."""
 
 _CALLBACKS: list[object] = []  # so that their code stays
 
@@ -48,7 +52,7 @@ def summing(function: F) -> F:
 def callback(loop: Callable[[Any], None]) -> int:
     """The address of a loop of one pointer, compiled for callers outside of Python; the code stays."""
     compiled: Any = CFunc(loop, ((types.voidptr,), types.void), {}, {})
-    compiled._cache = _Forms(loop)  # noqa: SLF001  Numba has no other door
+    compiled._cache = _Forms(loop, {})  # noqa: SLF001  Numba has no other door
     compiled.compile()
     _CALLBACKS.append(compiled)
     return int(compiled.address)
@@ -62,7 +66,7 @@ def kept(compiled: Callable[..., Any]) -> Path | None:
 def _compile(function: F, **options: Any) -> F:
     compiled = numba.njit(nogil=True, **options)(function)
     with suppress(OSError):  # what was typed at a prompt has no file, and is not kept
-        compiled._cache = _Forms(function)  # noqa: SLF001  Numba has no other door
+        compiled._cache = _Forms(function, options)  # noqa: SLF001  Numba has no other door
     return cast(F, compiled)
 
 
@@ -92,8 +96,8 @@ _rebuild: Any = CompileResult._rebuild  # noqa: SLF001  as Numba's own cache doe
 class _Forms:
     """What Numba asks for the compiled forms of one kernel. Trouble with the disk only costs the time to compile."""
 
-    def __init__(self, function: Any) -> None:
-        """Keep the forms of `function`.
+    def __init__(self, function: Any, options: dict[str, Any]) -> None:
+        """Keep the forms of `function` under some options.
 
         Raises:
             OSError: its file cannot be read.
@@ -101,7 +105,8 @@ class _Forms:
         self.name = f"{function.__module__}.{function.__qualname__}"
         text = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
         held = [cell.cell_contents for cell in function.__closure__ or ()]
-        self.source = digest(text, *function.__code__.co_positions(), *held)  # many lambdas have one name
+        chosen = [(name, sorted(option)) for name, option in options.items()]
+        self.source = digest(text, *function.__code__.co_positions(), *held, *chosen)  # many lambdas have one name
         self.fixed = all(isinstance(thing, type) for thing in held)
         self.cache_path: Path | None = None
 
@@ -111,7 +116,9 @@ class _Forms:
         for folder in FOLDERS:
             with suppress(Exception):  # missing, forbidden, or broken
                 content = self._file(folder, signature, context.codegen()).read_bytes()
-                form = _rebuild(context, *pickle.loads(content))  # noqa: S301  written by `save_overload`
+                if sha256(content[DIGEST:]).digest() != content[:DIGEST]:
+                    continue  # broken machine code would take the process down
+                form = _rebuild(context, *pickle.loads(content[DIGEST:]))  # noqa: S301  written by `save_overload`
                 self.cache_path = folder
                 return form
         return None
@@ -132,6 +139,7 @@ class _Forms:
 
 def _write(path: Path, content: bytes) -> None:
     """Whole or not at all, whoever else writes it."""
+    content = sha256(content).digest() + content
     draft = path.with_name(f"{path.name}.{uuid4().hex}")
     path.parent.mkdir(parents=True, exist_ok=True)
     try:

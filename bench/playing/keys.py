@@ -35,10 +35,10 @@ def agent_key(entry: Entry) -> str:
     """
     if not isinstance(entry.settings, Settings):
         raise TypeError(f"{entry.label} has no settings: {entry.skipped}")
-    settings = type(entry.settings)
+    classes = [cls for cls in type(entry.settings).__mro__ if issubclass(cls, Settings) and cls is not Settings]
     return digest(
         entry.settings.words(),
-        _sources(settings.__module__),
+        *dict.fromkeys(_sources(cls.__module__) for cls in classes),
         _folder(Path(planners.__file__).parent),
     )
 

@@ -83,7 +83,7 @@ def _fault(detail: ErrorDetails, value: Value, shape: Shape) -> list[Fault]:
     if found.unset:
         return []
     told = detail.get("ctx", {}).get("error")
-    expected = str(told) if told is not None else around.words() or detail["msg"]
+    expected = " ".join(str(told).split()) if told is not None else around.words() or detail["msg"]
     text, choices = found.content if isinstance(found.content, str) else "", around.choices()
     return [found.wrong(expected.rstrip("."), "" if text in choices else near(text, choices))]
 

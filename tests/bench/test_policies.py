@@ -6,8 +6,10 @@ from typing import Any
 
 import pandas as pd
 import pytest
+import torch
 
 from bench.playing.episode import SCHEMA, TIMINGS
+from bench.playing.keys import agent_key
 from bench.playing.replay import End, retrace, verify
 from bench.playing.runner import run
 from bench.playing.store import read
@@ -81,8 +83,7 @@ def told(agent: str, folder: Path) -> str:
 def saved(tmp_path: Path) -> Path:
     """A checkpoint of a VIN beside the scenario."""
     place, policy = tmp_path / "vin.safetensors", Vin(checkpoint="none", iterations=3)
-    settings = policy.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
-    checkpoint.write(place, "Vin", settings, weighted(policy).state_dict(), {})
+    checkpoint.write(place, "Vin", policy.trained(), weighted(policy).state_dict(), {})
     return place
 
 
@@ -93,8 +94,22 @@ def test_a_checkpoint_beside_the_scenario_is_found(saved: Path, tmp_path: Path) 
     assert (settings.checkpoint, settings.iterations) == (str(saved), 3)
 
 
+def test_weights_that_are_replaced_are_other_weights(saved: Path, tmp_path: Path) -> None:
+    """What was read under one digest stays what it was; read again, it is another agent with other weights."""
+    text = PAGE.replace("AGENT", "vin: {checkpoint: vin.safetensors}")
+    before: Any = read_scenario(text, tmp_path / "s.yaml").variants[0].agents[1]
+    first, key = weighted(before.settings), agent_key(before)
+    other = Vin(checkpoint="none", iterations=3, seed=1)
+    checkpoint.write(saved, "Vin", other.trained(), weighted(other).state_dict(), {})
+    after: Any = read_scenario(text, tmp_path / "s.yaml").variants[0].agents[1]
+    assert (agent_key(before), weighted(before.settings)) == (key, first)
+    assert agent_key(after) != key
+    assert torch.equal(weighted(after.settings).output.weight, weighted(other).output.weight)
+
+
 def test_no_checkpoint_yet_is_a_reason_to_skip(tmp_path: Path) -> None:
     """A shipped name without a file skips the agent; the others play."""
+    assert told("macn: {checkpoint: nobody, read: 2}", tmp_path).endswith("Did you mean reads?")
     scenario = read_scenario(PAGE.replace("AGENT", "macn: {checkpoint: nobody}"), tmp_path / "s.yaml")
     first, second = scenario.variants[0].agents
     assert (first.skipped, second.settings) == ("", None)
@@ -112,6 +127,10 @@ def test_what_is_wrong_with_a_policy_is_told_at_its_place(
         "6:23  agents[1].vin.checkpoint: got no.safetensors; "
         f"expected an existing file (looked for {tmp_path}/no.safetensors)."
     )
+    for name in ("./vin.safetensor", "vin.pt", ".", '""'):
+        assert told(f"vin: {{checkpoint: {name}}}", tmp_path).endswith(
+            "expected none, the name of a shipped checkpoint, or a file that ends in .safetensors."
+        )
     assert told("macn: {checkpoint: vin.safetensors}", tmp_path) == (
         "6:11  agents[1].macn: got {checkpoint: vin.safetensors}; expected a checkpoint of Macn (this is one of Vin)."
     )
@@ -120,7 +139,7 @@ def test_what_is_wrong_with_a_policy_is_told_at_its_place(
         "expected stitched False, with which the checkpoint was trained."
     )
     assert told("macn: {checkpoint: none, reads: 0}", tmp_path) == (
-        "6:37  agents[1].macn.reads: got 0; expected a whole number of at least 1."
+        "6:37  agents[1].macn.reads: got 0; expected a whole number from 1 to 1024."
     )
     assert told("macn: {checkpoint: none, read: 2}", tmp_path).endswith("Did you mean reads?")
     assert told("macn: {checkpoint: none, device: gpu}", tmp_path) == (

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -16,8 +15,7 @@ def save(tmp_path: Path) -> Callable[[Policy, str], str]:
 
     def save(policy: Policy, name: str) -> str:
         place = tmp_path / f"{name}.safetensors"
-        settings: dict[str, Any] = policy.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
-        checkpoint.write(place, type(policy).__name__, settings, weighted(policy).state_dict(), {"batches": 3})
+        checkpoint.write(place, type(policy).__name__, policy.trained(), weighted(policy).state_dict(), {"batches": 3})
         return str(place)
 
     return save

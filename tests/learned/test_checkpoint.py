@@ -10,7 +10,7 @@ import torch
 from safetensors.torch import save_file
 
 from learned import checkpoint
-from learned.checkpoint import place_of, read_card, read_weights
+from learned.checkpoint import located, place_of, read_card, read_weights
 from learned.policy import weighted
 from learned.vin import Vin
 from worlds.files import sha256
@@ -82,8 +82,21 @@ def test_other_shapes(place: Path) -> None:
     save_file(weights, place)
     change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
     assert wrong(place) == (
-        "a checkpoint that fits its card (small.safetensors: output.weight is [4, 5] there, [4, 4] here)"
+        "a checkpoint that fits its card "
+        "(small.safetensors: output.weight is float32 [4, 5] there, float32 [4, 4] here)"
     )
+
+
+def test_other_numbers(place: Path) -> None:
+    """Weights of another type, and some that are not numbers."""
+    where = "(small.safetensors: output.weight"
+    for tensor, sentence in (
+        (torch.zeros(4, 4).long(), f"that fits its card {where} is int64 [4, 4] there, float32 [4, 4] here)"),
+        (torch.full((4, 4), torch.nan), f"of numbers {where} has some that are none)"),
+    ):
+        save_file(dict(weighted(VIN).state_dict(), **{"output.weight": tensor}), place)
+        change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
+        assert wrong(place) == f"a checkpoint {sentence}"
 
 
 def test_missing_and_foreign_weights(place: Path) -> None:
@@ -92,11 +105,11 @@ def test_missing_and_foreign_weights(place: Path) -> None:
     weights["output.bias"] = torch.zeros(4)
     save_file(weights, place)
     change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
-    assert wrong(place).endswith("(small.safetensors: output.bias is [4] there, missing here)")
+    assert wrong(place).endswith("(small.safetensors: output.bias is float32 [4] there, missing here)")
     del weights["output.bias"], weights["output.weight"]
     save_file(weights, place)
     change(place.with_suffix(".json"), sha256=sha256(place.read_bytes()))
-    assert wrong(place).endswith("(small.safetensors: output.weight is missing there, [4, 4] here)")
+    assert wrong(place).endswith("(small.safetensors: output.weight is missing there, float32 [4, 4] here)")
 
 
 def test_cards_that_cannot_be_read(place: Path) -> None:
@@ -106,6 +119,8 @@ def test_cards_that_cannot_be_read(place: Path) -> None:
     assert wrong(place).startswith("a checkpoint whose card can be read (small.json: Invalid JSON: ")
     card.write_text("{}")
     assert wrong(place) == "a checkpoint whose card can be read (small.json: network: Field required)"
+    card.write_bytes("{é}".encode("latin-1"))
+    assert wrong(place).startswith("a checkpoint whose card can be read (small.json: 'utf-8' codec")
     card.unlink()
     assert wrong(place) == "a checkpoint with its card (there is no small.json beside small.safetensors)"
 
@@ -113,7 +128,7 @@ def test_cards_that_cannot_be_read(place: Path) -> None:
 def test_files_that_are_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that is named must exist; a shipped name that does not yet is a reason to skip, with the nearest name."""
     with pytest.raises(Mistake) as caught:
-        place_of("no.safetensors", tmp_path)
+        located("no.safetensors", tmp_path)
     assert str(caught.value) == f"an existing file (looked for {tmp_path}/no.safetensors)"
     monkeypatch.setattr(checkpoint, "SHIPPED", tmp_path)
     with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet$"):

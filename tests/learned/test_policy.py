@@ -97,7 +97,14 @@ def test_a_card_of_another_version(save: Save) -> None:
     card = json.loads(file.with_suffix(".json").read_text())
     card["settings"]["heads"] = 4
     file.with_suffix(".json").write_text(json.dumps(card))
-    assert refusal(checkpoint=str(file)) == "a checkpoint of this version (its card has heads, which is no setting)"
+    assert refusal(checkpoint=str(file)) == "a checkpoint of this version (its card has heads)"
+    del card["settings"]["heads"], card["settings"]["reads"]
+    file.with_suffix(".json").write_text(json.dumps(card))
+    assert refusal(checkpoint=str(file)) == "a checkpoint of this version (its card lacks reads)"
+    for value, sentence in (("4", "reads: '4'"), (0, "reads: Input should be greater than or equal to 1")):
+        card["settings"]["reads"] = value
+        file.with_suffix(".json").write_text(json.dumps(card))
+        assert refusal(checkpoint=str(file)) == f"a checkpoint whose card can be read ({sentence})"
 
 
 def test_a_device_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
