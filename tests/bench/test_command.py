@@ -93,7 +93,8 @@ def test_a_scenario_that_cannot_be_run_does_not_stop_the_next(fogbench: Fogbench
     Path("bad.yaml").write_text(impossible)
     code, out, err = fogbench("run", "bad.yaml", "fine.yaml")
     assert (code, "2 were played now" in out) == (2, True)
-    assert err == "all, episode 0: Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
+    reason = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
+    assert err in {f"all, episode {episode}: {reason}" for episode in (0, 1)}  # whichever worker is first
 
 
 def test_every_mistake_of_every_file_is_told_at_once(fogbench: Fogbench) -> None:
