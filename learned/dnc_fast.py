@@ -4,7 +4,7 @@ The links are most of what the backward pass needs, and they follow from the wri
 few steps only, and be worked out again in between.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -30,54 +30,38 @@ def fast_access(
         state: the state before, of the same type.
         every: keep the links for the backward pass at every so many steps; 1 keeps them all.
     """
+    lies = layout(heads, state.usage.shape[-1], interface.shape[:-1])
+    old = lies.buffers(state)
     if torch.is_grad_enabled() and (interface.requires_grad or any(part.requires_grad for part in state)):
-        reads, *after = _Step.apply(heads, every, interface, *state)  # type: ignore[no-untyped-call]  # torch's
-        return reads, AccessState(*after)
-    step = _step(heads, interface, state)
-    return step.reads, step.layout.views(step.new)
+        new, reads, *after = _Step.apply(lies, every, old, interface, *state)  # type: ignore[no-untyped-call]  # torch's
+        return reads, lies.packed(after, new)
+    new, reads, _ = _step(lies, old, interface)
+    return reads, lies.packed(lies.views(new), new)
 
 
-class _Done(NamedTuple):
-    """A step that was taken."""
-
-    layout: Layout
-    old: Buffers
-    new: Buffers
-    reads: Tensor
-    """[..., R, D]"""
-    tape: Tensor
-
-
-def _step(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> _Done:
-    batch = interface.shape[:-1]
-    lies = layout(heads, state.usage.shape[-1], batch)
-    old, new, tape = lies.buffers(state), lies.empty(interface), interface.new_empty(lies.tape)
-    reads, interface = interface.new_empty(*batch, heads.reads, heads.word), interface.contiguous()
+def _step(lies: Layout, old: Buffers, interface: Tensor) -> tuple[Buffers, Tensor, Tensor]:
+    """The state after, the reads, and the tape."""
+    new, reads, tape = lies.empty(interface), interface.new_empty(lies.reads), interface.new_empty(lies.tape)
+    interface = interface.contiguous()
     arrays = interface.data_ptr(), *old.addresses, *new.addresses, reads.data_ptr(), tape.data_ptr()
     run(forward(NUMBERS[tape.dtype]), lies.blocks, *lies.sizes, *arrays)
-    return _Done(lies, old, new, reads, tape)
+    return new, reads, tape
 
 
 class _Step(Function):
     """One step of a batch. What the way back needs stays on `ctx`, the step's node in torch's graph."""
 
     @staticmethod
-    def forward(ctx: Any, heads: Heads, every: int, interface: Tensor, *state: Tensor) -> tuple[Tensor, ...]:
-        """The reads and the state after."""
-        step = _step(heads, interface, AccessState(*state))
-        ctx.layout, ctx.old, ctx.new, ctx.tape, ctx.interface = (
-            step.layout,
-            step.old.rest,
-            step.new.rest,
-            step.tape,
-            interface.shape,
-        )
-        keep_links(ctx, step.old.links, state[4].grad_fn, every)
-        return step.reads, *step.layout.views(step.new)
+    def forward(ctx: Any, lies: Layout, every: int, old: Buffers, interface: Tensor, *state: Tensor) -> tuple[Any, ...]:
+        """The buffers of the state after, which are no part of the graph, the reads and the state after."""
+        new, reads, tape = _step(lies, old, interface)
+        ctx.layout, ctx.old, ctx.new, ctx.tape, ctx.interface = lies, old.rest, new.rest, tape, interface.shape
+        keep_links(ctx, old.links, state[4].grad_fn, every)
+        return new, reads, *lies.views(new)
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, d_reads: Tensor, *d_state: Tensor) -> tuple[Tensor | None, ...]:
+    def backward(ctx: Any, _: None, d_reads: Tensor, *d_state: Tensor) -> tuple[Tensor | None, ...]:
         """The gradients by the interface and the state before; zeros by past write weightings."""
         lies, links, d_reads = ctx.layout, links_before(ctx), d_reads.contiguous()
         d_new, d_old = lies.buffers(AccessState(*d_state)), lies.empty(d_reads)
@@ -88,7 +72,7 @@ class _Step(Function):
         )  # fmt: skip
         run(backward(NUMBERS[ctx.tape.dtype]), lies.blocks, *lies.sizes, *arrays)
         forget_links(ctx)
-        return None, None, d_interface, *lies.views(d_old)
+        return None, None, None, d_interface, *lies.views(d_old)
 
 
 def keep_links(step: Any, links: Tensor, before: Any, every: int) -> None:

@@ -2,10 +2,10 @@
 
 A state is two buffers, the links and all the rest, with a row for each number of a state and the samples in columns.
 The parts that others see are views of them, with the batch first. What comes back as such views, a state or a gradient
-of one, is used where it lies; anything else is copied.
+of one, is used where it lies, at once if it remembers its buffers; anything else is copied.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import prod
 from typing import NamedTuple
@@ -30,6 +30,13 @@ class Buffers(NamedTuple):
         return self.rest.data_ptr(), self.links.data_ptr()
 
 
+class Packed(AccessState[Tensor]):
+    """A state that remembers what its parts are views of."""
+
+    layout: "Layout | None" = None
+    buffers: Buffers
+
+
 class View(NamedTuple):
     """How a part lies in its buffer."""
 
@@ -49,11 +56,19 @@ class Layout(NamedTuple):
     links: tuple[int, int]
     tape: tuple[int, int]
     """The buffers' sizes."""
+    reads: tuple[int, ...]
+    """[..., R, D]"""
     parts: AccessState[View]
 
     def empty(self, like: Tensor) -> Buffers:
         """Room for a state."""
         return Buffers(like.new_empty(self.rest), like.new_empty(self.links))
+
+    def packed(self, parts: Iterable[Tensor], buffers: Buffers) -> Packed:
+        """The state of which these are the parts and the buffers."""
+        state = Packed(*parts)
+        state.layout, state.buffers = self, buffers
+        return state
 
     def views(self, buffers: Buffers) -> AccessState[Tensor]:
         """The parts of a state."""
@@ -65,6 +80,8 @@ class Layout(NamedTuple):
 
     def buffers(self, state: AccessState[Tensor]) -> Buffers:
         """The buffers that a state lies in, or copies."""
+        if isinstance(state, Packed) and state.layout is self:
+            return state.buffers
         *rest, links, precedence = state
         *places, place, last = self.parts
         return Buffers(_buffer([*rest, precedence], [*places, last], self.rest), _buffer([links], [place], self.links))
@@ -102,4 +119,6 @@ def layout(heads: Heads, rows: int, batch: tuple[int, ...]) -> Layout:
         filled[own] += part.numel()
     sizes = prod(batch), pitch, heads.word, rows, heads.reads, heads.writes, heads.linked
     tape = heads.interface + rows * (2 * heads.writes + heads.reads + 2)
-    return Layout(sizes, blocks, (filled[False], pitch), (filled[True], pitch), (tape, pitch), AccessState(*views))
+    reads = *batch, heads.reads, heads.word
+    buffers = (filled[False], pitch), (filled[True], pitch), (tape, pitch)
+    return Layout(sizes, blocks, *buffers, reads, AccessState(*views))
