@@ -11,6 +11,8 @@ from torch import Tensor, nn
 from learned.dnc_access import AccessState, Heads, access
 from learned.dnc_controller import Controller
 from learned.dnc_fast import fast_access
+from learned.dnc_single import Weights, single_step
+from learned.lanes import LANES
 
 
 class DNCState(NamedTuple):
@@ -69,6 +71,9 @@ class DNC(nn.Module):
 
     def step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
         """From inputs [..., inputs], with or without a batch, to outputs [..., outputs] and the next state."""
+        single = x.numel() == x.shape[-1] and self.controller.hidden % LANES == 0
+        if self.fast and single and x.is_cpu and not torch.is_grad_enabled():
+            return self._single_step(x, state)
         before = state.hidden, state.cell
         hidden, cell = self.controller(torch.cat([x, state.reads], -1), before, fast=self.fast)
         cell = cell.clamp(-self.clip, self.clip)  # `hidden` is within +-1 by itself
@@ -76,6 +81,13 @@ class DNC(nn.Module):
         reads = reads.flatten(-2)  # [..., R, D] -> [..., R * D]
         y = self.output(torch.cat([hidden, reads], -1)).clamp(-self.clip, self.clip)
         return y, DNCState(hidden, cell, reads, after)
+
+    def _single_step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
+        layers = self.controller, self.interface, self.output
+        weights = Weights(*(tensor for layer in layers for tensor in (layer.weight, layer.bias)))
+        after = single_step(self.heads, weights, x, state.reads, state.hidden, state.cell, state.access)
+        y, cell = (part.clamp_(-self.clip, self.clip) for part in (after.y, after.c))
+        return y, DNCState(after.h, cell, after.reads, after.access)
 
     def access(self, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
         """The memory access for an interface vector [..., I]."""

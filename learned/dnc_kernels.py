@@ -25,10 +25,12 @@ from worlds.types import Array
 
 Sizes = tuple[int, int, int, int, int]
 
-JOB = job(
+STEP = (
     "samples", "pitch", "word", "rows", "reads", "writes", "linked",
     "interface", "old", "old_links", "new", "new_links", "read", "tape",
-    "d_read", "d_new", "d_new_links", "d_old", "d_old_links", "d_interface",
+)  # fmt: skip
+JOB = job(
+    *STEP, "d_read", "d_new", "d_new_links", "d_old", "d_old_links", "d_interface",
 )  # fmt: skip
 """Sizes, then addresses: an interface [B, I]; states [rows, pitch] but for their links, and links [K * N * N, pitch],
 where the samples stand side by side, `pitch` numbers from row to row; what is read [B, R * D]; the tape [rows, pitch];

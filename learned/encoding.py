@@ -67,7 +67,7 @@ class Inputs(NamedTuple):
 
     def to(self, device: str) -> "Inputs":
         """The same on a device."""
-        return Inputs(*(part.to(device) for part in self))
+        return self if self.image.device.type == device else Inputs(*(part.to(device) for part in self))
 
     def here(self, maps: Tensor) -> Tensor:
         """What maps [B, C, H, W] say at the agents' cells: [B, C]."""

@@ -374,6 +374,23 @@ def test_one_sample_is_a_batch_of_one(fast: bool) -> None:
     torch.testing.assert_close(rest, outputs[4:])
 
 
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
+@pytest.mark.parametrize("batch", [(), (1,)])
+@pytest.mark.parametrize("links", [True, False])
+def test_a_single_step_is_that_with_gradients(links: bool, batch: tuple[int, ...], dtype: torch.dtype) -> None:
+    """Without gradients a step of one sample runs in one call, to the same outputs and states, clipped or not."""
+    torch.manual_seed(0)
+    network = DNC(3, 5, Heads(2, 2, 4, links), rows=6, hidden=16, clip=0.7).to(dtype)
+    with torch.no_grad():
+        for parameter in network.parameters():
+            parameter.mul_(5)
+    sequence = torch.randn(*batch, 7, 3, dtype=dtype)
+    expected = network(sequence)
+    with torch.no_grad():
+        torch.testing.assert_close(network(sequence), expected)
+    assert expected[1].cell.abs().max() == expected[0].abs().max() == torch.tensor(0.7, dtype=dtype)
+
+
 def test_rows_may_change_after_training() -> None:
     """The same parameters work with another number of rows."""
     network = DNC(3, 5, Heads(), rows=6, hidden=16)
