@@ -1,0 +1,88 @@
+"""One decision of every learned policy with fresh weights, on one thread, and MACN's beside its plain form.
+
+    pytest bench/timing/test_policies.py -s
+
+Plain is a decision by the equations: two convolutions to the reward map, value iteration, controller and memory access
+as they are written. In each round both take their turn, so that what else the machine does falls on both.
+"""
+
+from collections.abc import Callable, Iterator
+from time import perf_counter
+from typing import Any, cast
+
+import numpy as np
+import pytest
+import torch
+from pytest_benchmark.fixture import BenchmarkFixture
+from torch import Tensor
+
+from bench.reading.plugins import load
+from bench.reading.tables import AGENT
+from learned import LEARNED
+from learned import value_iteration as vi
+from learned.macn import Macn
+from learned.policy import Policy, PolicyAgent, weighted
+from worlds.blobs import Blobs
+from worlds.conditions import BudgetSettings, Tasks
+from worlds.grid import GridConditions
+from worlds.types import Observation
+
+ROUNDS, DECISIONS = 100, 10
+CONDITIONS = GridConditions(budget=BudgetSettings(steps=40), tasks=Tasks(distance=(1, 40)))
+WORLD = Blobs(size=16, obstacles=(3, 12), obstacle_size=(1, 3)).sample(np.random.default_rng(0), 0, CONDITIONS)
+
+Decide = Callable[[], object]
+
+
+@pytest.fixture(autouse=True)
+def _one_thread() -> Iterator[None]:
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    yield
+    torch.set_num_threads(before)
+
+
+def begun(policy: Policy) -> tuple[PolicyAgent, Observation]:
+    """An agent that has decided once, and what it sees."""
+    agent = policy.start(WORLD.task, np.random.default_rng(0))
+    observation = WORLD.sense(WORLD.reset(), np.random.default_rng(0))
+    agent.act(observation)
+    return agent, observation
+
+
+@pytest.mark.parametrize("name", LEARNED)
+def test_decision(benchmark: BenchmarkFixture, name: str) -> None:
+    """A decision of each policy."""
+    benchmark.group = "decision, one thread"
+    policy = cast(type[Policy], load(AGENT, name, LEARNED[name]))
+    agent, observation = begun(policy(checkpoint="none"))
+    benchmark(agent.act, observation)
+
+
+def test_ratio(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The share of the plain form's time that a decision of MACN takes, taking turns."""
+    fast, observation = begun(Macn(checkpoint="none"))
+    weighted.cache_clear()  # the plain form gets a network of its own
+    plain, _ = begun(Macn(checkpoint="none"))
+    network: Any = plain.network
+    network.memory.fast = False
+    planner = network.planner
+
+    def planned(image: Tensor, barrier: Tensor | None = None) -> tuple[Tensor, Tensor]:
+        reward = planner.reward_map.mix(planner.reward_map.features(image))
+        return vi.plain(reward, planner.normalised(), planner.iterations, barrier)
+
+    monkeypatch.setattr(planner, "forward", planned)
+    turns = [lambda: plain.act(observation), lambda: fast.act(observation)]
+    times = np.array([[seconds(turn) for turn in turns] for _ in range(ROUNDS + 2)])[2:]
+    before, after = 1e6 * np.median(times, 0)
+    ratio = np.median(times[:, 1] / times[:, 0])
+    print(f"\none decision of MACN: plain {before:.0f} us, fast {after:.0f} us, {ratio:.2f} of the plain form's time")
+
+
+def seconds(decide: Decide) -> float:
+    """Seconds of one decision, of ten in a row."""
+    began = perf_counter()
+    for _ in range(DECISIONS):
+        decide()
+    return (perf_counter() - began) / DECISIONS
