@@ -72,8 +72,11 @@ _ONEDNN = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
 
 
 def product(x: Tensor, weight: Tensor, bias: Tensor | None = None) -> Tensor:
-    """`linear`, by oneDNN where PyTorch has it: its matrix products know more processors than MKL's."""
-    if _ONEDNN is None or x.dim() == 1 or x.dtype is not torch.float32:
+    """`linear`, by oneDNN where PyTorch has it: its matrix products know more processors than MKL's.
+
+    Not for one row, where it is slower, or for none, which it refuses.
+    """
+    if _ONEDNN is None or x.dtype is not torch.float32 or x.numel() in {0, x.shape[-1]}:
         return linear(x, weight, bias)
     result: Tensor = _ONEDNN(x, weight, bias, "none", [], "")
     return result

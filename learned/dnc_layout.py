@@ -110,7 +110,7 @@ def layout(heads: Heads, rows: int, batch: tuple[int, ...]) -> Layout:
     processor's cache.
     """
     blocks = -(-prod(batch) // LANES)
-    pitch = LANES * (blocks | 1)
+    pitch = LANES * (blocks | 1) if blocks else 0
     views, filled = [], {True: 0, False: 0}
     for name, part in zip(AccessState._fields, heads.blank(rows), strict=True):
         own = name == "links"

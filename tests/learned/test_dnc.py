@@ -391,6 +391,19 @@ def test_a_single_step_is_that_with_gradients(links: bool, batch: tuple[int, ...
     assert expected[1].cell.abs().max() == expected[0].abs().max() == torch.tensor(0.7, dtype=dtype)
 
 
+@pytest.mark.parametrize("fast", [True, False])
+def test_an_empty_batch_steps(fast: bool) -> None:
+    """No samples give no outputs, a state of none, and gradients of zero."""
+    network = DNC(3, 5, Heads(), rows=6, hidden=16, fast=fast)
+    outputs, state = network(torch.randn(0, 7, 3))
+    assert outputs.shape == (0, 7, 5)
+    assert state.access.links.shape == (0, 1, 6, 6)
+    outputs.sum().backward()
+    assert all(parameter.grad is not None and not parameter.grad.any() for parameter in network.parameters())
+    with torch.no_grad():
+        assert network(torch.randn(0, 7, 3))[0].shape == (0, 7, 5)
+
+
 def test_rows_may_change_after_training() -> None:
     """The same parameters work with another number of rows."""
     network = DNC(3, 5, Heads(), rows=6, hidden=16)
