@@ -102,9 +102,11 @@ def gather(
         corners = places - cells.shape[1] // 2
     else:
         height, width = np.max([known.shape for known in maps], 0)
-        cells = np.full((len(maps), height + 2, width + 2), BLOCKED, np.uint8)  # as a view shows it beyond the map
+        cells = np.full((len(maps), height + 2, width + 2), UNKNOWN, np.uint8)
         for b, known in enumerate(maps):
-            cells[b, 1 : known.shape[0] + 1, 1 : known.shape[1] + 1] = known
+            rows, columns = known.shape
+            cells[b, : rows + 2, : columns + 2] = BLOCKED  # beyond the map, as in a view
+            cells[b, 1 : rows + 1, 1 : columns + 1] = known
         corners = np.full_like(places, -1)
     return Known(cells, corners, places, np.array(goals, np.int64), np.array(moves, np.int64), blocked)
 
