@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import torch
 
+from learned.dnc_layout import Buffers
 from worlds.settings import Settings
 from worlds.types import AgentSettings, Task, World
 
-NOT_CARRIED = (Settings, Task, np.random.Generator, torch.nn.Module, type)
-"""What an agent was given when it started, the weights it shares with all others of its settings, and its classes."""
+NOT_CARRIED = (Settings, Task, np.random.Generator, torch.nn.Module, Buffers, type)
+"""What an agent was given when it started, the weights it shares with all others of its settings, its classes, and the
+room that the parts of a DNC's state are views of: that is padded for sixteen samples, and the parts are counted."""
 
 ARRAYS = (np.ndarray, torch.Tensor)
 
