@@ -81,7 +81,7 @@ BROKEN = [
         [
             (
                 "3:30  network.macn.checkpoint: got mcan-grid; "
-                "expected one that is there; the checkpoint mcan-grid does not exist yet."
+                "expected one that is there; the checkpoint mcan-grid does not exist yet; did you mean macn-grid?."
             ),
         ],
     ),
