@@ -3,6 +3,7 @@
 Numba's own cache knows a kernel by its own file alone, so that an edit to a callee or to a constant of another file
 would go unnoticed; it raises where nothing can be written; and two processes that write at once may mix up its index.
 So each compiled form has a file of its own here, in a folder named after all the sources that kernels can come from.
+Of a user's kernel only its own file counts: what it calls in other files of the user is not watched.
 """
 
 import os
