@@ -12,7 +12,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor, nn
 
-from worlds.files import sha256
+from worlds.files import put, sha256
 from worlds.mistake import Mistake, Unavailable
 
 SHIPPED = Path(__file__).with_name("checkpoints")
@@ -131,13 +131,6 @@ def write(place: Path, network: str, settings: dict[str, Any], weights: dict[str
     card = Card(network=network, settings=settings, sha256=sha256(contents), training=training)
     put(place, contents)
     put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
-
-
-def put(place: Path, contents: bytes) -> None:
-    """Write a whole file or none."""
-    aside = place.with_name(f".{place.name}.{os.getpid()}")
-    aside.write_bytes(contents)
-    aside.replace(place)
 
 
 def _told(tensor: Tensor | None) -> str:

@@ -18,6 +18,7 @@ import torch
 from learned import checkpoint
 from learned.imitation import Student, validate
 from learned.recipe import Recipe
+from worlds.files import put
 from worlds.mistake import Mistake
 from worlds.streams import digest
 
@@ -130,9 +131,9 @@ class Course:
         }
         contents = io.BytesIO()
         torch.save(state, contents)
-        checkpoint.put(self._state, contents.getvalue())
+        put(self._state, contents.getvalue())
         lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
-        checkpoint.put(self.folder / "log.jsonl", lines.encode())
+        put(self.folder / "log.jsonl", lines.encode())
 
     def _load(self) -> None:
         state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)

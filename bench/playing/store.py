@@ -5,7 +5,6 @@ scenario as it is now: what was played under other settings stays on the disk an
 """
 
 import fcntl
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +17,7 @@ import pyarrow.parquet as pq
 from bench.playing.episode import SCHEMA, Episode
 from bench.playing.keys import agent_key, world_key
 from bench.reading.scenario import Scenario
+from worlds import files
 from worlds.mistake import Mistake
 
 WHO = ["variant", "agent", "episode"]
@@ -194,18 +194,13 @@ def recording(folder: Path) -> Iterator[Recorder]:
 
 
 def put(path: Path, content: bytes | pa.Buffer) -> None:
-    """Write a whole file or none: to a dot-name, to the disk, then renamed.
+    """Write a whole file or none.
 
     Raises:
         StoreError: it cannot be written.
     """
-    draft = path.with_name(f".{path.name}")
     try:
-        with draft.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        draft.replace(path)
+        files.put(path, memoryview(content))
     except OSError as error:
         raise _unwritable(path, error) from None
 
