@@ -39,7 +39,7 @@ class DNC(nn.Module):
         *,
         rows: int = 32,
         hidden: int = 256,
-        clip: float = 20,
+        clip: int = 20,
         fast: bool = True,
         keep_links_every: int = 1,
     ) -> None:
@@ -61,6 +61,14 @@ class DNC(nn.Module):
         self.controller = Controller(inputs + read, hidden)
         self.interface = nn.Linear(hidden, heads.interface)
         self.output = nn.Linear(hidden + read, outputs)
+        self.settled: Weights | None = None
+
+    def settle(self) -> None:
+        """Get ready for single steps without gradients: from now on the weights must not change."""
+        layers = self.controller, self.interface, self.output
+        weights = [tensor.detach() for layer in layers for tensor in (layer.weight, layer.bias)]
+        if self.fast and weights[0].is_cpu and self.controller.hidden % LANES == 0:
+            self.settled = Weights(*weights)
 
     def blank(self, batch: tuple[int, ...] = ()) -> DNCState:
         """The state before the first step: zeros."""
@@ -71,9 +79,10 @@ class DNC(nn.Module):
 
     def step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
         """From inputs [..., inputs], with or without a batch, to outputs [..., outputs] and the next state."""
-        single = x.numel() == x.shape[-1] and self.controller.hidden % LANES == 0
-        if self.fast and single and x.is_cpu and not torch.is_grad_enabled():
-            return self._single_step(x, state)
+        if self.settled and x.numel() == x.shape[-1]:
+            vectors = x, state.hidden, state.cell, state.reads
+            (hidden, cell, reads, y), packed = single_step(self.heads, self.settled, self.clip, vectors, state.access)
+            return y, DNCState(hidden, cell, reads, packed)
         before = state.hidden, state.cell
         hidden, cell = self.controller(torch.cat([x, state.reads], -1), before, fast=self.fast)
         cell = cell.clamp(-self.clip, self.clip)  # `hidden` is within +-1 by itself
@@ -81,13 +90,6 @@ class DNC(nn.Module):
         reads = reads.flatten(-2)  # [..., R, D] -> [..., R * D]
         y = self.output(torch.cat([hidden, reads], -1)).clamp(-self.clip, self.clip)
         return y, DNCState(hidden, cell, reads, after)
-
-    def _single_step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
-        layers = self.controller, self.interface, self.output
-        weights = Weights(*(tensor for layer in layers for tensor in (layer.weight, layer.bias)))
-        after = single_step(self.heads, weights, x, state.reads, state.hidden, state.cell, state.access)
-        y, cell = (part.clamp_(-self.clip, self.clip) for part in (after.y, after.c))
-        return y, DNCState(after.h, cell, after.reads, after.access)
 
     def access(self, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
         """The memory access for an interface vector [..., I]."""

@@ -25,12 +25,11 @@ from worlds.types import Array
 
 Sizes = tuple[int, int, int, int, int]
 
-STEP = (
-    "samples", "pitch", "word", "rows", "reads", "writes", "linked",
-    "interface", "old", "old_links", "new", "new_links", "read", "tape",
-)  # fmt: skip
+SIZES = "samples", "pitch", "word", "rows", "reads", "writes", "linked"
+STATES = "old", "old_links", "new", "new_links"
 JOB = job(
-    *STEP, "d_read", "d_new", "d_new_links", "d_old", "d_old_links", "d_interface",
+    *SIZES, "interface", *STATES, "read", "tape",
+    "d_read", "d_new", "d_new_links", "d_old", "d_old_links", "d_interface",
 )  # fmt: skip
 """Sizes, then addresses: an interface [B, I]; states [rows, pitch] but for their links, and links [K * N * N, pitch],
 where the samples stand side by side, `pitch` numbers from row to row; what is read [B, R * D]; the tape [rows, pitch];
@@ -97,9 +96,14 @@ def state_of(number: Any, state: int, links: int, job: Any, block: int) -> Acces
 @kernel
 def tape_of(number: Any, job: Any, block: int) -> Tape:
     """A block of the tape."""
-    _, rows, reads, writes, _ = sizes_of(job)
-    size = interface_size(sizes_of(job)) + rows * (2 * writes + reads + 2)
-    return taped(sizes_of(job), block_of(number, job.tape, size, job, block))
+    return taped(sizes_of(job), block_of(number, job.tape, tape_size(sizes_of(job)), job, block))
+
+
+@kernel
+def tape_size(sizes: Sizes) -> int:
+    """Rows of a tape."""
+    _, rows, reads, writes, _ = sizes
+    return interface_size(sizes) + rows * (2 * writes + reads + 2)
 
 
 @kernel

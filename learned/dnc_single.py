@@ -3,27 +3,31 @@
 For one sample, calls of PyTorch take longer than most of what they do. The rest of the time goes into reading weights.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+import torch
 from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
 from learned.dnc_access import AccessState, Heads
 from learned.dnc_controller_kernels import rows, squash_sample
-from learned.dnc_kernels import STEP, interface_size, samples_of, sizes_of, state_of, step, tape_of
+from learned.dnc_kernels import SIZES, STATES, interface_size, sizes_of, state_of, step, tape_size, taped
 from learned.dnc_layout import Packed, layout
 from learned.lanes import LANES, NUMBERS
-from learned.native import job, pointer, run
-from worlds.kernel import callback, kernel, summing
+from learned.linear import apply, matrix, vector
+from learned.native import job, run
+from worlds.kernel import callback, kernel
 from worlds.types import Array
 
 JOB = job(
-    *STEP, "inputs", "hidden", "outputs", "x", "reads_before", "h", "c", "new_h", "new_c", "y",
+    *SIZES, *STATES, "inputs", "hidden", "outputs", "clip",
+    "x", "h", "c", "last_reads", "new_h", "new_c", "new_reads", "y",
     "gate_weight", "gate_bias", "interface_weight", "interface_bias", "output_weight", "output_bias",
 )  # fmt: skip
-"""What a step of the memory access needs, then sizes, vectors and weights; `interface` is room for one."""
+"""What the memory access has of a step, then sizes, vectors and weights."""
 
 
 class Weights(NamedTuple):
@@ -40,35 +44,32 @@ class Weights(NamedTuple):
     output_bias: Tensor
 
 
-class Stepped(NamedTuple):
-    """What a step gives; nothing is clipped."""
-
-    y: Tensor
-    h: Tensor
-    c: Tensor
-    reads: Tensor
-    """[..., R * D]"""
-    access: Packed
-
-
 def single_step(
-    heads: Heads, weights: Weights, x: Tensor, reads: Tensor, h: Tensor, c: Tensor, access: AccessState[Tensor]
-) -> Stepped:
-    """One step from x, what was read last, h, c and the memory: [1, any] or [any]."""
-    batch = x.shape[:-1]
-    lies = layout(heads, access.usage.shape[-1], batch)
-    old, new, tape = lies.buffers(access), lies.empty(x), x.new_empty(lies.tape)
-    vectors = x, reads, h, c = [vector.contiguous() for vector in (x, reads, h, c)]
-    weights = Weights(*(weight.contiguous() for weight in weights))
-    interface, y = x.new_empty(heads.interface), x.new_empty(*batch, len(weights.output))
-    read, new_h, new_c = (vector.new_empty(vector.shape) for vector in (reads, h, c))
+    heads: Heads, weights: Weights, clip: int, vectors: Sequence[Tensor], access: AccessState[Tensor]
+) -> tuple[Sequence[Tensor], Packed]:
+    """One step of one sample.
+
+    Args:
+        heads: the sizes.
+        weights: of all layers.
+        clip: c and y stay within +-clip.
+        vectors: x, h, c and what was read last, [1, any] or [any].
+        access: the memory before.
+
+    Returns:
+        The next h and c, what is read, and y; and the memory after.
+    """
+    x, h, _, reads = vectors = [vector.contiguous() for vector in vectors]
+    lies = layout(heads, access.usage.shape[-1], x.shape[:-1])
+    old, new = lies.buffers(access), lies.empty(x)
+    after = [torch.empty_like(vector) for vector in (h, h, reads)]
+    after.append(x.new_empty(*x.shape[:-1], len(weights.output)))
     run(
-        loop(NUMBERS[x.dtype]), 1, *lies.sizes,
-        interface.data_ptr(), *old.addresses, *new.addresses, read.data_ptr(), tape.data_ptr(),
-        x.shape[-1], h.shape[-1], y.shape[-1],
-        *(tensor.data_ptr() for tensor in (*vectors, new_h, new_c, y, *weights)),
+        loop(NUMBERS[x.dtype]), 1, *lies.sizes, *old.addresses, *new.addresses,
+        x.shape[-1], h.shape[-1], len(weights.output), clip,
+        *(tensor.data_ptr() for tensor in (*vectors, *after, *weights)),
     )  # fmt: skip
-    return Stepped(y, new_h, new_c, read, lies.packed(lies.views(new), new))
+    return after, lies.packed(lies.views(new), new)
 
 
 @lru_cache
@@ -77,12 +78,13 @@ def loop(number: type[np.floating[Any]]) -> int:
 
     def whole_step(address: Any) -> None:
         job = carray(address, 1, JOB)[0]
-        read, h, size = job.reads * job.word, job.hidden, interface_size(sizes_of(job))
-        gates, tanhs = np.empty(4 * h, number), np.empty(h, number)
-        told, known = np.empty(job.inputs + read + h, number), np.empty(h + read, number)
-        told[: job.inputs] = vector(number, job.x, job.inputs)
-        told[job.inputs : job.inputs + read] = vector(number, job.reads_before, read)
-        told[job.inputs + read :] = vector(number, job.h, h)
+        sizes, inputs, h = sizes_of(job), job.inputs, job.hidden
+        read, size = job.word * job.reads, interface_size(sizes)
+        gates, tanhs, interface = np.empty(4 * h, number), np.empty(h, number), np.empty((1, size), number)
+        told, known = np.empty(inputs + read + h, number), np.empty(h + read, number)
+        told[:inputs] = vector(number, job.x, inputs)
+        told[inputs : inputs + read] = vector(number, job.last_reads, read)
+        told[inputs + read :] = vector(number, job.h, h)
         apply(matrix(number, job.gate_weight, 4 * h, len(told)), vector(number, job.gate_bias, 4 * h), told, gates)
         squash_sample(
             gates.reshape(-1, LANES), rows(number, job.c, h, 0), rows(number, job.new_h, h, 0),
@@ -91,45 +93,26 @@ def loop(number: type[np.floating[Any]]) -> int:
         known[:h] = vector(number, job.new_h, h)
         apply(
             matrix(number, job.interface_weight, size, h), vector(number, job.interface_bias, size), known[:h],
-            vector(number, job.interface, size),
+            interface[0],
         )  # fmt: skip
+        reads = vector(number, job.new_reads, read)
         step(
-            sizes_of(job), samples_of(number, job.interface, size, job, 0),
-            state_of(number, job.old, job.old_links, job, 0), state_of(number, job.new, job.new_links, job, 0),
-            samples_of(number, job.read, read, job, 0), tape_of(number, job, 0),
+            sizes, interface, state_of(number, job.old, job.old_links, job, 0),
+            state_of(number, job.new, job.new_links, job, 0), reads.reshape(1, read),
+            taped(sizes, np.empty((tape_size(sizes), LANES), number)),
         )  # fmt: skip
-        known[h:] = vector(number, job.read, read)
-        apply(
-            matrix(number, job.output_weight, job.outputs, len(known)), vector(number, job.output_bias, job.outputs),
-            known, vector(number, job.y, job.outputs),
-        )  # fmt: skip
+        known[h:] = reads
+        y = vector(number, job.y, job.outputs)
+        apply(matrix(number, job.output_weight, len(y), len(known)), vector(number, job.output_bias, len(y)), known, y)
+        within(vector(number, job.new_c, h), job.clip)
+        within(y, job.clip)
 
     return callback(whole_step)
 
 
 @kernel
-def vector(number: Any, address: int, size: int) -> Array:
-    """[size] there."""
-    return carray(pointer(address), (size,), number)
-
-
-@kernel
-def matrix(number: Any, address: int, height: int, width: int) -> Array:
-    """[height, width] there."""
-    return carray(pointer(address), (height, width), number)
-
-
-@kernel
-def apply(weight: Array, bias: Array, x: Array, y: Array) -> None:
-    """Make y the weight times x, and the bias: row after row, as the matrix lies in memory."""
-    for n in range(len(y)):
-        y[n] = bias[n] + product(weight[n], x)
-
-
-@summing
-def product(x: Array, y: Array) -> Any:
-    """The scalar product."""
-    total = x.dtype.type(0)
-    for k in range(len(x)):
-        total += x[k] * y[k]
-    return total
+def within(x: Array, limit: int) -> None:
+    """Clip to +-limit; NaN stays."""
+    for n in range(len(x)):
+        if abs(x[n]) > limit:
+            x[n] = np.copysign(limit, x[n])

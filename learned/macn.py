@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from learned.encoding import Inputs
+from learned.macn_single import Weights, see
 from learned.memory import Remembering, RememberingNetwork
 from learned.value_iteration import ACTIONS
 from learned.vin import Planning
@@ -29,6 +30,20 @@ class MacnNetwork(RememberingNetwork):
         rows, columns = settings.size
         super().__init__(settings, rows * columns + ACTIONS)
         self.planner = settings.planner()
+        self.settled: Weights | None = None
+
+    @torch.no_grad()
+    def settle(self) -> None:
+        """Get ready for single steps without gradients: from now on the weights must not change."""
+        if self.features.weight.is_cpu:
+            layers = *self.planner.reward_map.collapsed(), self.planner.normalised(), *self.features.parameters()
+            self.settled = Weights(*(weight.contiguous() for weight in layers))
+
+    def see(self, inputs: Inputs) -> Tensor:
+        """As for all, for one sample in one call."""
+        if self.settled and len(inputs.image) == 1:
+            return see(self.settled, self.planner.iterations, inputs)
+        return super().see(inputs)
 
     def plan(self, inputs: Inputs) -> Tensor:
         """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""

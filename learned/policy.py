@@ -7,7 +7,7 @@ unless no weight depends on it (`FREE`).
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
 import torch
@@ -24,7 +24,6 @@ from torch import Tensor, nn
 from learned import checkpoint
 from learned.checkpoint import NONE, Card
 from learned.encoding import STILL, Frame, Inputs, encode, gather
-from learned.value_iteration import RewardMap
 from worlds.belief import KnownMap
 from worlds.mistake import Mistake
 from worlds.settings import Settings
@@ -35,6 +34,14 @@ Size = Annotated[int, Field(ge=1, le=1024)]
 
 FREE = frozenset({"checkpoint", "seed", "device", "iterations", "memory_rows"})
 """Settings that may differ from those of the training."""
+
+
+@runtime_checkable
+class Settling(Protocol):
+    """**Protocol:** a part of a network that decides faster once its weights no longer change."""
+
+    def settle(self) -> None:
+        """From now on they do not."""
 
 
 class Network(nn.Module):
@@ -175,9 +182,13 @@ def weighted(settings: Policy) -> Network:
     Raises:
         Mistake: the checkpoint is broken or does not fit.
     """
-    network = load(settings).requires_grad_(False)
-    for part in network.modules():
-        if isinstance(part, RewardMap):
+    return settled(load(settings))
+
+
+def settled(network: Network) -> Network:
+    """A network whose weights will not change any more."""
+    for part in network.requires_grad_(False).modules():
+        if isinstance(part, Settling):
             part.settle()
     return network
 

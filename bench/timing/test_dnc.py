@@ -98,6 +98,7 @@ def network_both(network: nn.Module) -> Turn:
 def single(name: str) -> Turn:
     """One step of a single sample without gradients."""
     one = network(name)
+    one.settle()
     x, state = torch.randn(INPUTS), one.blank()
     with torch.no_grad():
         _, state = one.step(x, state)

@@ -65,6 +65,7 @@ def test_ratio(monkeypatch: pytest.MonkeyPatch) -> None:
     weighted.cache_clear()  # the plain form gets a network of its own
     plain, _ = begun(Macn(checkpoint="none"))
     network: Any = plain.network
+    network.settled = network.memory.settled = None
     network.memory.fast = False
     planner = network.planner
 

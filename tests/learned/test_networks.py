@@ -1,6 +1,7 @@
 """The five networks, against what the papers say they are."""
 
 from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from learned.dnc import DNC
 from learned.encoding import CHANNELS, COMPASS, SIGHT, Inputs
 from learned.macn import Macn
 from learned.memory import LSTM, FeedForward
-from learned.policy import Policy
+from learned.policy import Policy, settled
 from learned.value_iteration import ValueIteration, plain
 from learned.vin import Vin
 
@@ -60,6 +61,24 @@ def test_a_batch_is_its_samples(name: str) -> None:
     for b in range(3):
         alone = run(network, [Inputs(*(part[b : b + 1] for part in inputs)) for inputs in steps])
         assert torch.allclose(alone[:, 0], together[:, b], atol=1e-5)
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_a_settled_network_is_the_same(name: str) -> None:
+    """What runs in one call once the weights no longer change gives the same scores, for one sample and for more."""
+    policy = NETWORKS[name]
+    torch.manual_seed(0)
+    network = policy.network().double()
+    for batch in (1, 3):
+        steps = [double(seen(policy, batch, step)) for step in range(4)]
+        expected = run(network, steps)
+        found = run(settled(deepcopy(network)), steps)
+        torch.testing.assert_close(found, expected.detach(), rtol=1e-10, atol=1e-12)
+
+
+def double(inputs: Inputs) -> Inputs:
+    """The same in double precision."""
+    return Inputs(*(part.double() if part.is_floating_point() else part for part in inputs))
 
 
 @pytest.mark.parametrize("name", NETWORKS)
