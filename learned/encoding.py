@@ -90,7 +90,7 @@ def gather(
     """What some agents know.
 
     Args:
-        observations: what each is told, with views of one size.
+        observations: what each is told.
         goals: of each.
         moves: the last of each, STILL before the first.
         maps: [H, W] the known map of each, of any size; None: they see their current views alone.
@@ -98,7 +98,11 @@ def gather(
     places = np.array([observation.place for observation in observations], np.int64)  # [B, 2]
     blocked = np.array([observation.blocked for observation in observations])  # [B]
     if maps is None:
-        cells = np.stack([observation.view for observation in observations])  # [B, K, K]
+        side = max(len(observation.view) for observation in observations)
+        cells = np.full((len(places), side, side), UNKNOWN, np.uint8)  # [B, K, K], K of the widest view
+        for b, observation in enumerate(observations):
+            rim = (side - len(observation.view)) // 2
+            cells[b, rim : side - rim, rim : side - rim] = observation.view
         corners = places - cells.shape[1] // 2
     else:
         height, width = np.max([known.shape for known in maps], 0)

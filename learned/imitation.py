@@ -60,18 +60,25 @@ class Student:
         self.batches = state["batches"]
 
     def _play(self, done: float) -> Rollout:
-        recipe, training, first = self.recipe, self.recipe.training, self.batches * self.recipe.training.batch
-        until = training.curriculum.until if training.curriculum else 0.0
-        family = eased(recipe.easy, recipe.worlds.family, part(done, until))
-        numbers = range(first, first + training.batch)
-        episodes = draw_episodes(recipe.worlds, "training", training.seed, numbers, family)
-        luck = stream(training.seed, recipe.worlds.family.words(), "training moves", self.batches)
+        recipe, training = self.recipe, self.recipe.training
+        episodes = self._episodes(done)
+        luck = stream(training.seed, recipe.lessons[0].worlds.family.words(), "training moves", self.batches)
         network = self.network
         if training.noise:
             network = Noisy(network, training.noise, int(digest(training.seed, "noise", self.batches)[:8], 16))
         first_share, last_share = training.teacher.share
         share = first_share + part(done, training.teacher.until) * (last_share - first_share)
         return roll(recipe.network, network, episodes, Explorer(luck, training.batch, share))
+
+    def _episodes(self, done: float) -> list[Episode]:
+        """Those of the batch, of all lessons in turn."""
+        training, first = self.recipe.training, self.batches * self.recipe.training.batch
+        grown = part(done, training.curriculum.until if training.curriculum else 0.0)
+        turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
+        return [
+            draw_episode(*turns[number % len(turns)], "training", training.seed, number)
+            for number in range(first, first + training.batch)
+        ]
 
 
 class Explorer:
@@ -135,8 +142,10 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
     """How a network does in the held-out episodes of each variant: success and test error [%]."""
     scores = {}
     for name, worlds in recipe.held_out.items():
-        numbers = range(recipe.training.validation.episodes)
-        episodes = draw_episodes(worlds, "validation", recipe.training.seed, numbers, worlds.family)
+        episodes = [
+            draw_episode(worlds, worlds.family, "validation", recipe.training.seed, number)
+            for number in range(recipe.training.validation.episodes)
+        ]
         with torch.no_grad():
             rollout = roll(recipe.network, network, episodes, greedy)
         wrong = float(rollout.wrong().sum() / max(1, int(rollout.judged.sum())))
@@ -144,16 +153,10 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
     return scores
 
 
-def draw_episodes(worlds: Worlds, purpose: str, seed: int, numbers: range, family: MapFamily) -> list[Episode]:
-    """The episodes of some numbers, on maps of `family`; those of another purpose share no luck with them."""
-    words = worlds.family.words()
-    return [
-        Episode(
-            cast(GridWorld, family.sample(stream(seed, words, f"{purpose} map", number), number, worlds.conditions)),
-            stream(seed, words, f"{purpose} luck", number),
-        )
-        for number in numbers
-    ]
+def draw_episode(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Episode:
+    """The episode of a number, on a map of `family`; that of another purpose shares no luck with it."""
+    map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {part}", number) for part in ("map", "luck"))
+    return Episode(cast(GridWorld, family.sample(map_luck, number, worlds.conditions)), luck)
 
 
 def pick(weights: Array, chances: Array) -> Array:

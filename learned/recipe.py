@@ -37,7 +37,7 @@ class Curriculum(Settings):
     """Maps that grow harder over the first batches."""
 
     easy: dict[str, Any]
-    """Settings of the map family at first: numbers grow to those under `maps`, anything else changes at the end."""
+    """Settings of the maps of every lesson at first: numbers grow to the lesson's own, the rest changes at the end."""
     until: Probability = 0.3
     """Part of the batches over which they grow."""
 
@@ -81,6 +81,14 @@ class Worlds(NamedTuple):
     conditions: GridConditions
 
 
+class Lesson(NamedTuple):
+    """Worlds to learn on."""
+
+    worlds: Worlds
+    easy: MapFamily
+    """The maps at first."""
+
+
 @dataclass(frozen=True, slots=True)
 class Recipe:
     """One file: a network, where it learns, how, and where it is tried."""
@@ -89,15 +97,15 @@ class Recipe:
     about: str
     text: str
     network: "Policy"
-    worlds: Worlds
-    easy: MapFamily
-    """The maps at first."""
+    lessons: tuple[Lesson, ...]
+    """They take turns: an episode has the lesson of its number, counted round and round."""
     held_out: Mapping[str, Worlds]
     """What the network is tried on while it learns, by the variants' names."""
     training: Training
 
     def words(self) -> str:
         """All that fixes the weights, as text."""
-        worlds = [self.worlds, Worlds(self.easy, self.worlds.conditions), *self.held_out.values()]
+        begun = [Worlds(easy, worlds.conditions) for worlds, easy in self.lessons]
+        worlds = [*(lesson.worlds for lesson in self.lessons), *begun, *self.held_out.values()]
         parts = (part for family, conditions in worlds for part in (family.words(), conditions.words()))
         return "\n".join((self.network.words(), self.training.words(), *parts))

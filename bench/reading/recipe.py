@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
+from bench.reading.blocks import near, one_of
 from bench.reading.document import parse
 from bench.reading.overlays import pages, settle
 from bench.reading.page import CONDITIONS, FileName
@@ -13,7 +14,7 @@ from bench.reading.positions import Fault, Value, merge
 from bench.reading.reading import Reading, opened
 from bench.reading.scenario import wrong
 from bench.reading.tables import NETWORK
-from learned.recipe import Recipe, Training, Worlds
+from learned.recipe import Lesson, Recipe, Training, Worlds
 from worlds.mistake import Mistake, Unavailable
 from worlds.types import MapFamily
 
@@ -43,18 +44,45 @@ class RecipePage(Training):
     tasks: Any = None
     budget: Any = None
     variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
-    """Where the network is tried while it learns: name to what differs from where it learns; by default nothing."""
+    """Where the network is tried while it learns: name to what differs from the rest; by default the rest itself."""
+    lessons: Annotated[list[str], Field(default_factory=list)]
+    """Variants on which it learns, by turns; by default it learns on the rest itself."""
 
 
-class RecipeReading(Reading[RecipePage]):
-    """What the page of a recipe says."""
+class LessonReading(Reading[RecipePage]):
+    """What a page says of worlds to learn on."""
 
     def __init__(self, page: Value, folder: Path) -> None:
         """Read a page; plug-ins, checkpoints and map files are relative to `folder`."""
         super().__init__(RecipePage, page, folder)
-        network, curriculum = page.child("network"), page.child("curriculum")
-        self.network = self._network(network) if network and isinstance(network.content, str | dict) else None
+        curriculum = page.child("curriculum")
         self.easy = self._easy(page.child("maps"), curriculum.child("easy") if curriculum else None)
+
+    def _easy(self, maps: Value | None, easy: Value | None) -> MapFamily | None:
+        """The family with the settings of the curriculum's beginning; without a curriculum, the family."""
+        if maps is None or easy is None or self.family is None:
+            return self.family
+        (block,) = maps.fields().values()
+        return cast(MapFamily | None, self.block(type(self.family), merge(opened(block), easy)))
+
+
+class RecipeReading(LessonReading):
+    """What the page of a recipe says, and those of the variants on which the network learns."""
+
+    def __init__(self, page: Value, variants: dict[str, Value], folder: Path) -> None:
+        """Read a page, and which of its variants are lessons; without any, the page itself is the one lesson."""
+        super().__init__(page, folder)
+        network, lessons = page.child("network"), page.child("lessons")
+        self.network = self._network(network) if network and isinstance(network.content, str | dict) else None
+        named = self._lessons(lessons.content if lessons and isinstance(lessons.content, list) else [], variants)
+        self.lessons = [LessonReading(lesson, folder) for lesson in named] or [self]
+        self.faults += [fault for lesson in self.lessons if lesson is not self for fault in lesson.faults]
+
+    def _lessons(self, items: list[Value], variants: dict[str, Value]) -> list[Value]:
+        for item in items:
+            if isinstance(item.content, str) and item.content not in variants and not item.unset:
+                self.faults.append(item.wrong(one_of(variants), near(item.content, variants)))
+        return [variants[str(item.content)] for item in items if str(item.content) in variants]
 
     def _network(self, item: Value) -> "Policy | None":
         named = self.named(item, "the name of a network, or one name with its settings")
@@ -75,13 +103,6 @@ class RecipeReading(Reading[RecipePage]):
             self.faults.append(block.fields()["checkpoint"].wrong(f"one that is there; {lack}"))
             return None
 
-    def _easy(self, maps: Value | None, easy: Value | None) -> MapFamily | None:
-        """The family with the settings of the curriculum's beginning; without a curriculum, the family."""
-        if maps is None or easy is None or self.family is None:
-            return self.family
-        (block,) = maps.fields().values()
-        return cast(MapFamily | None, self.block(type(self.family), merge(opened(block), easy)))
-
 
 def read_recipe(text: str, path: Path) -> Recipe:
     """Read the text of a recipe.
@@ -98,8 +119,9 @@ def read_recipe(text: str, path: Path) -> Recipe:
     page = parse(text, faults)
     if page is None:
         raise wrong(faults, path)
-    recipe = RecipeReading(page, path.parent)
-    variants = {name: Reading(RecipePage, row, path.parent) for name, row in pages(page, faults, VARIED).items()}
+    rows = pages(page, faults, VARIED)
+    recipe = RecipeReading(page, rows, path.parent)
+    variants = {name: Reading(RecipePage, row, path.parent) for name, row in rows.items()}
     faults += settle([recipe.faults, *(variant.faults for variant in variants.values())])
     if faults:
         raise wrong(faults, path)
@@ -113,15 +135,13 @@ def _recipe(text: str, recipe: RecipeReading, variants: dict[str, Reading[Recipe
     page = recipe.page
     assert page is not None
     assert recipe.network is not None
-    assert recipe.easy is not None
     training = Training(**{name: getattr(page, name) for name in Training.model_fields})
     return Recipe(
         name=page.name,
         about=page.about,
         text=text,
         network=recipe.network.model_copy(update={"seed": training.seed}),
-        worlds=_worlds(recipe),
-        easy=recipe.easy,
+        lessons=tuple(Lesson(_worlds(lesson), cast(MapFamily, lesson.easy)) for lesson in recipe.lessons),
         held_out={name: _worlds(variant) for name, variant in variants.items()},
         training=training,
     )

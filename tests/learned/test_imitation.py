@@ -9,11 +9,11 @@ import pytest
 import torch
 
 from learned.encoding import Inputs
-from learned.imitation import Explorer, Noisy, Student, access_weight, draw_episodes, imitation_loss, part, pick, rate
+from learned.imitation import Explorer, Noisy, Student, access_weight, draw_episode, imitation_loss, part, pick, rate
 from learned.imitation import validate as tried
 from learned.macn import Macn
 from learned.policy import weighted
-from learned.recipe import Curriculum, Recipe, Training, Validation, Worlds
+from learned.recipe import Curriculum, Lesson, Recipe, Training, Validation, Worlds
 from learned.rollout import Episode, Moment, Rollout, roll
 from worlds.blobs import Blobs
 from worlds.types import Array
@@ -31,7 +31,7 @@ def recipe(conditions: Callable[..., Any]) -> Callable[..., Recipe]:
         worlds = Worlds(MAPS, conditions(steps=12, radius=2))
         training = Training(**{"batches": 40, "batch": 16, "validation": Validation(episodes=50), **fields})
         policy = SMALL.model_copy(update={**(network or {}), "seed": training.seed})
-        return Recipe("small", "", "", policy, worlds, MAPS, {"all": worlds}, training)
+        return Recipe("small", "", "", policy, (Lesson(worlds, MAPS),), {"all": worlds}, training)
 
     return make
 
@@ -144,8 +144,9 @@ def test_noise_is_remembered_and_repeats() -> None:
 
 def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> None:
     """Episodes of one number differ with their purpose, and repeat with it; the luck differs too."""
-    worlds = recipe().worlds
-    drawn = [draw_episodes(worlds, purpose, 0, range(5), MAPS) for purpose in ("training", "validation", "training")]
+    ((worlds, _),) = recipe().lessons
+    purposes = "training", "validation", "training"
+    drawn = [[draw_episode(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
     maps = [[episode.world.blocked for episode in episodes] for episodes in drawn]
     assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
@@ -159,7 +160,7 @@ def test_a_curriculum_is_played_from_its_beginning(
     """At first all maps are as empty as the easy family; after its part of the batches they are full."""
     easy = Blobs(size=6, obstacles=(0, 0), obstacle_size=(1, 1))
     made = recipe(batches=4, curriculum=Curriculum(easy={}, until=0.5))
-    student, walls = Student(replace(made, easy=easy)), list[float]()
+    student, walls = Student(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
 
     def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
         walls.append(float(np.mean([episode.world.blocked.mean() for episode in episodes])))
@@ -170,6 +171,30 @@ def test_a_curriculum_is_played_from_its_beginning(
         student.learn()
     assert walls[0] == 0
     assert walls[0] < walls[1] < min(walls[2:])
+
+
+def test_lessons_take_turns(
+    recipe: Callable[..., Recipe], conditions: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over the batches each episode has the lesson of its number, with its own maps, sensor and budget."""
+    made, wide = recipe(batch=4), Blobs(size=9, obstacles=(9, 9), obstacle_size=(1, 1))
+    other = Worlds(wide, conditions(steps=20, radius=3))
+    student = Student(replace(made, lessons=(*made.lessons, Lesson(other, wide), *made.lessons)))
+    sizes, budgets, sides = list[int](), list[int](), list[int]()
+
+    def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
+        rollout = roll(settings, network, episodes, choose)
+        sizes.extend(len(episode.world.blocked) for episode in episodes)
+        budgets.extend(episode.world.task.budget.steps for episode in episodes)
+        sides.extend(len(episode.observation.view) for episode in episodes)
+        return rollout
+
+    monkeypatch.setattr("learned.imitation.roll", rolled)
+    for _ in range(2):
+        student.learn()
+    assert sizes == [6, 9, 6, 6, 9, 6, 6, 9]
+    assert budgets == [12, 20, 12, 12, 20, 12, 12, 20]
+    assert sides == [5, 7, 5, 5, 7, 5, 5, 7]
 
 
 def test_a_network_learns(recipe: Callable[..., Recipe]) -> None:

@@ -86,10 +86,13 @@ class Repeater(PolicyAgent):
 
 
 def worlds_of(conditions: Callable[..., Any], rules: dict[str, Any], count: int = 12) -> list[GridWorld]:
-    """Maps with blobs and tunnels, of several sizes."""
-    made = conditions(steps=25, distance=(3, 30), **rules)
+    """Maps with blobs and tunnels, of several sizes, seen near and far."""
+    near, far = (conditions(steps=25, distance=(3, 30), **{**rules, "radius": rules["radius"] + k}) for k in range(2))
     blobs, tunnels = Blobs(size=9, obstacles=(2, 8), obstacle_size=(1, 3)), Tunnel(length=(4, 9))
-    return [(tunnels if k % 3 == 0 else blobs).sample(np.random.default_rng(k), 0, made) for k in range(count)]
+    return [
+        (tunnels if k % 3 == 0 else blobs).sample(np.random.default_rng(k), 0, far if k % 2 else near)
+        for k in range(count)
+    ]
 
 
 def luck(number: int) -> np.random.Generator:

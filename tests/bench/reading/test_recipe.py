@@ -1,6 +1,7 @@
 """Mistakes in recipes are told like those in scenarios; what is right becomes worlds, a network and its training."""
 
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -12,10 +13,13 @@ from learned.macn import Macn
 from learned.recipe import Teacher, Training
 from worlds.blobs import Blobs
 from worlds.mistake import Mistake
+from worlds.tunnel import Tunnel
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"
-KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, sensor, rules, tasks, budget, variants"
+KEYS = (
+    f"{', '.join(Training.model_fields)}, name, about, network, maps, sensor, rules, tasks, budget, variants, lessons"
+)
 SETTINGS = f"one of {', '.join(Macn.model_fields)}"
 
 GOOD = """\
@@ -151,6 +155,20 @@ BROKEN = [
         ["6:19  got broken YAML (expected ',' or '}', but got '{'); expected one YAML document."],
     ),
     ("seed: 2", "seed: -1", ["15:7  seed: got -1; expected a whole number of at least 0."]),
+    ("seed: 2", "lessons: 32x32", ["15:10  lessons: got 32x32; expected a list."]),
+    ("seed: 2", "lessons: [{32x32: 1}]", ["15:11  lessons[0]: got {32x32: 1}; expected text."]),
+    (
+        "seed: 2",
+        "lessons: [32x32, 32x23]",
+        ["15:18  lessons[1]: got 32x23; expected one of 32x32. Did you mean 32x32?"],
+    ),
+    (
+        "{blobs: {size: 32}}, budget: {steps: 60}}",
+        "{tunnel: {length: [4, 9]}}}\nlessons: [32x32]",
+        [
+            (f"8:21  curriculum.easy: got obstacles; expected one of {', '.join(Tunnel.model_fields)}."),
+        ],
+    ),
     ("seed: 2", "episodes: 3", [f"15:1  got episodes; expected one of {KEYS}."]),
     ("budget: {steps: 40}\n", "", ["1:1  budget: got nothing; expected a mapping."]),
     (
@@ -167,9 +185,10 @@ def test_the_recipe_is_read() -> None:
     full = Blobs(size=16, obstacles=(0, 12), obstacle_size=(1, 3))
     assert recipe.name == "small"
     assert recipe.network == Macn(checkpoint="none", memory="lstm", seed=2)
-    assert recipe.worlds.family == full
-    assert recipe.worlds.conditions.budget.steps == 40
-    assert recipe.easy == full.model_copy(update={"obstacles": (2, 2)})
+    ((worlds, easy),) = recipe.lessons
+    assert worlds.family == full
+    assert worlds.conditions.budget.steps == 40
+    assert easy == full.model_copy(update={"obstacles": (2, 2)})
     assert recipe.held_out.keys() == {"32x32"}
     assert recipe.held_out["32x32"].family == full.model_copy(update={"size": 32})
     assert recipe.held_out["32x32"].conditions.budget.steps == 60
@@ -184,8 +203,26 @@ def test_little_has_to_be_said() -> None:
     maps = "{blobs: {size: 8, obstacles: [0, 2], obstacle_size: [1, 2]}}"
     text = f"name: least\nnetwork: macn\nmaps: {maps}\nbudget: {{steps: 20}}\nbatches: 3\n"
     recipe = read_recipe(text, Path("r.yaml"))
-    assert recipe.easy == recipe.worlds.family
-    assert recipe.held_out == {"all": recipe.worlds}
+    ((worlds, easy),) = recipe.lessons
+    assert easy == worlds.family
+    assert recipe.held_out == {"all": worlds}
+
+
+def test_lessons_are_variants() -> None:
+    """Each has its variant's worlds, and begins with the easy settings over its own; one may stand there twice."""
+    more = GOOD.replace("seed: 2", "  dense: {maps: {blobs: {obstacles: [9, 30]}}}\nlessons: [dense, 32x32, dense]")
+    recipe = read_recipe(more, Path("r.yaml"))
+    dense, large = (recipe.held_out[name] for name in ("dense", "32x32"))
+    assert [lesson.worlds for lesson in recipe.lessons] == [dense, large, dense]
+    for lesson in recipe.lessons:
+        family = cast(Blobs, lesson.worlds.family)
+        assert lesson.easy == family.model_copy(update={"obstacles": (2, 2)})
+
+
+def test_a_variant_that_is_no_lesson_may_have_other_maps() -> None:
+    """The easy settings need not fit what the network is only tried on."""
+    text = GOOD.replace("{blobs: {size: 32}}", "{tunnel: {length: [4, 9]}}")
+    assert read_recipe(text, Path("r.yaml")).held_out["32x32"].family == Tunnel(length=(4, 9))
 
 
 @pytest.mark.parametrize(("old", "new", "lines"), BROKEN, ids=range(len(BROKEN)))
@@ -215,4 +252,4 @@ def test_a_variable_that_is_not_set_is_told(monkeypatch: pytest.MonkeyPatch) -> 
         read_recipe(text, Path("r.yaml"))
     assert str(caught.value) == "r.yaml: got ${FOG_RADIUS}; expected that environment variable to be set."
     monkeypatch.setenv("FOG_RADIUS", "2")
-    assert read_recipe(text, Path("r.yaml")).worlds.conditions.sensor.radius == 2
+    assert read_recipe(text, Path("r.yaml")).lessons[0].worlds.conditions.sensor.radius == 2
