@@ -22,7 +22,11 @@ from learned.native import run
 
 
 class Controller(nn.Module):
-    """W and b, drawn as PyTorch draws those of an LSTM."""
+    """W and b, drawn as PyTorch draws those of an LSTM; the forget gates' biases are 1 higher.
+
+    So a fresh controller forgets over several steps and not at once, and learns what it must know much later (Gers et
+    al. 2000; Jozefowicz et al. 2015, "An empirical exploration of recurrent network architectures").
+    """
 
     def __init__(self, inputs: int, hidden: int) -> None:
         """Draw the weights."""
@@ -31,6 +35,8 @@ class Controller(nn.Module):
         self.hidden = hidden
         self.weight = nn.Parameter(torch.empty(4 * hidden, inputs + hidden).uniform_(-bound, bound))
         self.bias = nn.Parameter(torch.empty(4 * hidden).uniform_(-bound, bound))
+        with torch.no_grad():
+            self.bias[hidden : 2 * hidden] += 1
 
     def forward(self, x: Tensor, state: tuple[Tensor, Tensor], *, fast: bool = True) -> tuple[Tensor, Tensor]:
         """The next h and c, of x and the last h and c; `fast` is for float32 and float64 on a CPU."""

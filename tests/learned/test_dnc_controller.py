@@ -32,3 +32,11 @@ def test_it_is_the_lstm_of_pytorch(fast: bool, batch: tuple[int, ...], hidden: i
         wanted: list[Tensor] = [by_x, by_h, by_c, torch.cat([by_input, by_hidden], -1), by_bias]
         for one, other in zip(found, wanted, strict=True):
             assert (one - other).norm() <= (1e-9 if dtype is torch.float64 else 1e-5) * other.norm()
+
+
+def test_a_fresh_one_remembers() -> None:
+    """Its forget gates' biases are drawn around 1, all others around 0, no farther off than 1 / sqrt(hidden)."""
+    torch.manual_seed(0)
+    biases = Controller(INPUTS, 64).bias.view(4, 64)  # input, forget, candidate, output
+    off = biases - torch.tensor([0, 1, 0, 0])[:, None]
+    assert 0.1 < off.abs().max() <= 0.125
