@@ -32,6 +32,10 @@ SEEN = CHANNELS * (2 * SIGHT + 1) ** 2
 COMPASS = 12
 """Numbers of a compass: sign, logarithm and clamped size of both offsets to the goal; last move, one of 5; blocked."""
 
+HORIZON = 64
+"""Cells; how much farther off a goal lies is not told, so that no number grows with the map beyond all that a network
+learned from (as relative positions are clipped in Shaw et al. 2018, section 3.2)."""
+
 STILL = 4
 """In the place of the last move before the first."""
 
@@ -159,7 +163,7 @@ def point(places: Array, goals: Array, moves: Array, blocked: Array, compass: Ar
         for axis in range(2):
             offset = goals[b, axis] - places[b, axis]
             compass[b, axis] = np.sign(offset)
-            compass[b, 2 + axis] = np.log1p(abs(offset))
+            compass[b, 2 + axis] = np.log1p(min(abs(offset), HORIZON))
             compass[b, 4 + axis] = min(max(offset, -SIGHT), SIGHT) / SIGHT
         compass[b, 6 + moves[b]] = 1
         compass[b, 11] = blocked[b]

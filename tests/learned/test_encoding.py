@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pytest
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
@@ -80,6 +81,17 @@ def test_a_compass_by_hand() -> None:
     expected[0, [6 + 2, 11]] = 1
     expected[1, 6 + STILL] = 1
     assert torch.allclose(compass, expected)
+
+
+@pytest.mark.parametrize("far", [65, 10_000])
+def test_beyond_the_horizon_all_goals_look_alike(far: int) -> None:
+    """A goal 64 cells off and one farther off in the same direction give the same inputs, one nearer does not."""
+    goals = np.array([[63, 0], [64, 0], [far, 0]])
+    places, cells = np.zeros((3, 2), np.int64), np.zeros((3, 3, 3), np.uint8)
+    known = Known(cells, places - 1, places, goals, np.full(3, STILL), np.zeros(3, np.bool_))
+    image, _, sight, compass = encode(known, Frame((5, 5), centred=True))
+    assert all(torch.equal(told[1], told[2]) for told in (image, sight, compass))
+    assert not torch.equal(compass[0], compass[1])
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0, 7]), st.booleans())
