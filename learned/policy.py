@@ -4,7 +4,7 @@ A setting that a scenario does not give is as in the checkpoint's card; one that
 unless no weight depends on it (`FREE`).
 """
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, runtime_checkable
@@ -123,11 +123,16 @@ class Policy(Settings):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _as_trained(cls, block: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        settings = handler(block)
+    def _as_trained(cls, block: Any, read: ModelWrapValidatorHandler[Self]) -> Self:
+        settings = read(block)
         if settings.checkpoint != NONE and isinstance(block, dict):
             card = checkpoint.read_card(checkpoint.place_of(settings.checkpoint))
-            settings = handler(settings.of_training(card) | block)
+            settings.recognise(card)
+            try:
+                settings = read(card.settings | block)
+            except ValidationError as error:
+                raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
+            settings.hold_to(card, block)
             settings._weights = card.sha256  # noqa: SLF001  its own
         weighted(settings)  # whatever is wrong with the weights is told now
         return settings
@@ -136,28 +141,30 @@ class Policy(Settings):
         """The settings that a card of these weights has."""
         return self.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
 
-    def of_training(self, card: Card) -> dict[str, Any]:
-        """The settings on a card.
+    def recognise(self, card: Card) -> None:
+        """Compare a card with these settings by its names alone.
 
         Raises:
-            Mistake: it is the card of another network, or differs from these settings where it must not.
+            Mistake: it is the card of another network, or of another version.
         """
-        said = self.trained()
         if card.network != type(self).__name__:
             raise Mistake(f"a checkpoint of {type(self).__name__} (this is one of {card.network})")
-        if odd := sorted(card.settings.keys() ^ said.keys()):
+        if odd := sorted(card.settings.keys() ^ self.trained().keys()):
             how = "has" if odd[0] in card.settings else "lacks"
             raise Mistake(f"a checkpoint of this version (its card {how} {odd[0]})")
-        try:
-            read = type(self).model_validate({**card.settings, "checkpoint": NONE}).trained()
-        except ValidationError as error:
-            raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
-        if bent := [name for name, value in card.settings.items() if read[name] != value]:
-            raise Mistake(f"a checkpoint whose card can be read ({bent[0]}: {card.settings[bent[0]]!r})")
-        for name in sorted(self.model_fields_set & card.settings.keys() - FREE):
-            if said[name] != card.settings[name]:
-                raise Mistake(f"{name} {card.settings[name]}, with which the checkpoint was trained")
-        return card.settings
+
+    def hold_to(self, card: Card, given: Container[str]) -> None:
+        """Compare these settings, of which some were given, with those on a card that they were laid over.
+
+        Raises:
+            Mistake: they differ where they must not, or the card has no such values.
+        """
+        said = self.trained()
+        for name, value in sorted(card.settings.items()):
+            if said[name] != value and name not in given:
+                raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
+            if said[name] != value and name not in FREE:
+                raise Mistake(f"{name} {value}, with which the checkpoint was trained")
 
 
 def load(settings: Policy) -> Network:

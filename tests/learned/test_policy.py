@@ -75,6 +75,21 @@ def test_what_no_weight_depends_on_may_change(save: Save) -> None:
     assert Macn(checkpoint=file, reads=2).reads == 2
 
 
+def test_a_network_is_built_once(save: Save, draw: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """However often its settings are read and its agents start; no card needs one of its own."""
+    file, task = save(Macn(checkpoint="none"), "mine"), draw("S..\n..G").task
+    built, network = [], Macn.network
+    monkeypatch.setattr(Macn, "network", lambda self: built.append(self) or network(self))
+    for fields in ({}, {"iterations": 20}, {"checkpoint": "none"}):
+        weighted.cache_clear()
+        built.clear()
+        policies = [Macn(**{"checkpoint": file, **fields}) for _ in range(2)]
+        for policy in policies:
+            policy.start(task, np.random.default_rng())
+            policy.parameter_bytes()
+        assert built == policies[:1]
+
+
 def test_wrong_head_counts(save: Save) -> None:
     """Settings that the weights do not fit are refused with those that they do."""
     file = save(Macn(checkpoint="none"), "mine")
