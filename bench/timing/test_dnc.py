@@ -7,7 +7,7 @@ all take their turn, so that what else the machine does falls on all; the ratios
 everything come in as they lie in a chain of steps, for each form in its own way.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -21,6 +21,7 @@ from learned.dnc_access import AccessState, Heads, access
 from learned.dnc_fast import fast_access
 from worlds.types import Array
 
+THREADS = 2
 ROUNDS, STEPS = 30, 10
 BATCH, ROWS, INPUTS = 64, 32, 16
 HEADS = Heads(reads=4, writes=1, word=8)
@@ -35,14 +36,6 @@ def plain_access(heads: Heads, interface: Tensor, state: AccessState[Tensor]) ->
 
 
 FORMS: dict[str, Form] = {"plain": plain_access, "fast": fast_access}
-
-
-@pytest.fixture(autouse=True)
-def _two_threads() -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(2)
-    yield
-    torch.set_num_threads(before)
 
 
 def after_steps(form: Form) -> AccessState[Tensor]:

@@ -6,13 +6,12 @@ Plain is a decision by the equations: two convolutions to the reward map, value 
 as they are written. In each round both take their turn, so that what else the machine does falls on both.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from time import perf_counter
 from typing import Any, cast
 
 import numpy as np
 import pytest
-import torch
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor
 
@@ -27,19 +26,12 @@ from worlds.conditions import BudgetSettings, Tasks
 from worlds.grid import GridConditions
 from worlds.types import Observation
 
+THREADS = 1
 ROUNDS, DECISIONS = 100, 10
 CONDITIONS = GridConditions(budget=BudgetSettings(steps=40), tasks=Tasks(distance=(1, 40)))
 WORLD = Blobs(size=16, obstacles=(3, 12), obstacle_size=(1, 3)).sample(np.random.default_rng(0), 0, CONDITIONS)
 
 Decide = Callable[[], object]
-
-
-@pytest.fixture(autouse=True)
-def _one_thread() -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    yield
-    torch.set_num_threads(before)
 
 
 def begun(policy: Policy) -> tuple[PolicyAgent, Observation]:

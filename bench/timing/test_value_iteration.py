@@ -6,7 +6,7 @@ In each round all take their turn, so that what else the machine does falls on a
 A turn is one call; a second one right after, which finds its code and its inputs in the cache, is told by its rate.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -18,20 +18,13 @@ from torch import Tensor
 from learned.value_iteration import plain
 from learned.value_iteration_fast import fast
 
+THREADS = 2
 ROUNDS = 15
 SIDE = 2048
 SHAPES = [(128, 16, 20), (32, 32, 40), (8, 64, 80), (512, 11, 16)]
 """Batch, rows and columns of a map, iterations."""
 
 Form = Callable[[Tensor, Tensor, int], tuple[Tensor, Tensor]]
-
-
-@pytest.fixture(autouse=True)
-def _two_threads() -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(2)
-    yield
-    torch.set_num_threads(before)
 
 
 def inputs(batch: int, size: int) -> tuple[Tensor, Tensor, Tensor]:
