@@ -94,7 +94,7 @@ class Course:
             {"batch": self.student.batches, "loss": loss, "seconds": round(self.seconds, 1), "variants": variants}
         )
         reached = [_mean(variants, "success"), -_mean(variants, "test_error")]
-        if reached > self.best:
+        if reached >= self.best:  # of equals, the later has learned more
             self.best = reached
             self._keep()
 
