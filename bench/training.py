@@ -13,10 +13,11 @@ from bench.reading.scenario import text_of
 from bench.reporting.learning import write_curves
 from bench.shipped import find_recipe
 from learned.recipe import Recipe
+from worlds.files import alone
 from worlds.mistake import Mistake
 
 if TYPE_CHECKING:
-    from learned.training import Trial
+    from learned.training import Course, Trial
 
 TRAININGS = Path("results/training")
 """Where trainings are kept."""
@@ -34,14 +35,20 @@ def train_recipe(said: str, device: str, out: Path | None, batches: int | None, 
 
     Raises:
         ScenarioError: all the mistakes of the file.
-        Mistake: there is no such recipe or device, or the folder holds another training.
+        Mistake: there is no such recipe or device, or the folder holds another training or is trained in right now.
     """
     path = find_recipe(said)
     recipe = _changed(read_recipe(text_of(path), path), device, batches, seed)
     from learned.training import Course  # noqa: PLC0415  it loads PyTorch, which a broken recipe need not
 
     folder, console = out or TRAININGS / recipe.name, Console()
-    course = Course(recipe, folder, circumstances())
+    with alone(folder, "training"):
+        _train(Course(recipe, folder, circumstances()), console)
+
+
+def _train(course: "Course", console: Console) -> None:
+    """Train to the end, with a bar, and a line for each trial."""
+    recipe = course.recipe
     columns = (
         BarColumn(),
         MofNCompleteColumn(),
@@ -56,7 +63,7 @@ def train_recipe(said: str, device: str, out: Path | None, batches: int | None, 
             bars.update(bar, completed=news.batches, loss=f"loss {news.loss:.3f}")
             if news.trial:
                 _say(_told(news.trial), console)
-                write_curves(course.trials, folder)
+                write_curves(course.trials, course.folder)
     _say(f"The best weights are in {course.weights}", console)
 
 

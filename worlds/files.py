@@ -1,9 +1,13 @@
-"""Files: read whole and written whole, known by their contents, and complained about in one line."""
+"""Files: read and written whole, known by their contents, complained about in one line; folders held by one process."""
 
+import fcntl
 import hashlib
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from worlds.mistake import Mistake
 from worlds.types import MapError
 
 
@@ -31,6 +35,33 @@ def put(path: Path, contents: bytes | memoryview) -> None:
         file.flush()
         os.fsync(file.fileno())
     draft.replace(path)
+
+
+@contextmanager
+def alone(folder: Path, work: str) -> Iterator[None]:
+    """Hold a folder, which is made if it is not there; the kernel lets go of it, however this process ends.
+
+    Args:
+        folder: `.lock` in it has the number of the process that holds it, or held it last.
+        work: what is done there.
+
+    Raises:
+        Mistake: another process, or this one, holds it already.
+        OSError: it cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("a+") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.seek(0)
+            raise Mistake(
+                f"{folder}: got a second {work}; expected the one in process {lock.read()} to end first."
+            ) from None
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield
 
 
 def sha256(contents: bytes) -> str:

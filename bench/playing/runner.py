@@ -82,7 +82,8 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
 
     Raises:
         RunError: a world cannot be made, or the project has a bug.
-        StoreError: the store is broken, cannot be written, or another run records there.
+        StoreError: the store is broken, or cannot be written.
+        Mistake: another run records there.
     """
     with recording(folder) as recorder:
         done = recorded(folder, scenario)

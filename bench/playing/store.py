@@ -4,9 +4,8 @@
 scenario as it is now: what was played under other settings stays on the disk and enters nothing.
 """
 
-import fcntl
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from time import monotonic
 
@@ -170,20 +169,15 @@ def recording(folder: Path) -> Iterator[Recorder]:
     """Open a store for writing, alone; what killed runs left half written is removed.
 
     Raises:
-        StoreError: another run has it open, or it cannot be written.
+        Mistake: another run has it open.
+        StoreError: it cannot be written.
     """
-    try:
-        (folder / "episodes").mkdir(parents=True, exist_ok=True)
-        lock = (folder / ".lock").open("w")
-    except OSError as error:
-        raise _unwritable(folder, error) from None
-    with lock:
+    with ExitStack() as held:
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # the kernel lets go of it, however this process ends
-        except OSError:
-            raise StoreError(
-                f"{folder}: got a second run; expected the one that is recording here to end first."
-            ) from None
+            held.enter_context(files.alone(folder, "run"))
+            (folder / "episodes").mkdir(exist_ok=True)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
         for leftover in (folder / "episodes").glob(".*.parquet"):
             leftover.unlink()
         recorder = Recorder(folder)

@@ -50,7 +50,7 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     assert out.count("% success") == 4
     assert f"The best weights are in {folder}/small.safetensors" in out
     assert {file.name for file in folder.iterdir()} == {
-        *("small.safetensors", "small.json", "state.pt", "log.jsonl", "learning.png"),
+        *(".lock", "small.safetensors", "small.json", "state.pt", "log.jsonl", "learning.png"),
     }
     log = [json.loads(line) for line in (folder / "log.jsonl").read_text().splitlines()]
     assert [trial["batch"] for trial in log] == [2, 4]

@@ -96,12 +96,13 @@ def left_at(folder: Path) -> int:
     return batches
 
 
-def start(folder: Path) -> subprocess.Popen[bytes]:
+def start(folder: Path, batches: int = 30) -> subprocess.Popen[bytes]:
     """The command, in a process of its own."""
-    (folder / "tiny.yaml").write_text(TEXT.replace("BATCHES", "30"))
+    (folder / "tiny.yaml").write_text(TEXT.replace("BATCHES", str(batches)))
     command = [sys.executable, "-m", "bench", "train", "tiny.yaml", "--out", "out"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}  # for two at once
-    return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL)
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=pipe)
 
 
 def test_a_killed_training_ends_with_the_same_weights(tmp_path: Path) -> None:
@@ -114,11 +115,32 @@ def test_a_killed_training_ends_with_the_same_weights(tmp_path: Path) -> None:
         assert killed.poll() is None
         time.sleep(0.002)
     killed.kill()
-    killed.wait()
+    killed.communicate()
     assert left_at(folders[1] / "out") < 30
     again = start(folders[1])
-    assert (undisturbed.wait(), again.wait()) == (0, 0)
+    assert [process.communicate()[1] for process in (undisturbed, again)] == [b"", b""]
+    assert (undisturbed.returncode, again.returncode) == (0, 0)
     assert left(folders[1] / "out") == left(folders[0] / "out")
+
+
+def test_a_second_training_in_a_folder_is_refused(tmp_path: Path) -> None:
+    """In one line, with exit code 2, until the first is dead; then it goes on from there."""
+    first = start(tmp_path, 10**6)
+    while not (tmp_path / "out" / "state.pt").exists():
+        assert first.poll() is None
+        time.sleep(0.01)
+    second = start(tmp_path, 10**6)
+    _, told = second.communicate()
+    line = f"out: got a second training; expected the one in process {first.pid} to end first.\n"
+    assert (second.returncode, told.decode()) == (2, line)
+    first.kill()
+    first.communicate()
+    batches, third = left_at(tmp_path / "out"), start(tmp_path, 10**6)
+    while left_at(tmp_path / "out") == batches:
+        assert third.poll() is None
+        time.sleep(0.01)
+    third.kill()
+    third.communicate()
 
 
 def test_the_best_weights_are_kept_with_their_card(tmp_path: Path) -> None:

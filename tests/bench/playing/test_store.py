@@ -1,5 +1,6 @@
 """The store: whole files, current rows, one writer, little memory."""
 
+import os
 import pickle
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from bench.playing.episode import SCHEMA, Episode
 from bench.playing.keys import agent_key, world_key
 from bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
 from bench.reading.scenario import Scenario
+from worlds.mistake import Mistake
 
 
 def row(scenario: Scenario, episode: int, **changes: Any) -> Episode:
@@ -168,9 +170,9 @@ def test_a_broken_part_is_named_and_kept(make: Any, tmp_path: Path) -> None:
 def test_a_second_run_is_refused(make: Any, tmp_path: Path) -> None:
     """While one run records, another gets one line; afterwards it may record."""
     store = tmp_path / "store"
-    with recording(store), pytest.raises(StoreError) as caught:
+    with recording(store), pytest.raises(Mistake) as caught:
         write(store, row(make(), 0))
-    assert str(caught.value) == f"{store}: got a second run; expected the one that is recording here to end first."
+    assert str(caught.value) == f"{store}: got a second run; expected the one in process {os.getpid()} to end first."
     write(store, row(make(), 0))
     assert len(read(store, make(), ["episode"])) == 1
 
