@@ -96,10 +96,13 @@ class Policy(Settings):
         Raises:
             Mistake: a network that was made for maps of one size meets another.
         """
-        extent = int(task.extent[0]), int(task.extent[1])
-        if self.reading == "map" and self.size != extent:
-            raise Mistake(f"got a map of {extent[0]}x{extent[1]}; expected {self.size[0]}x{self.size[1]}, the size")
+        if not self.fits(task.extent):
+            raise Mistake(f"got a map of {_by(task.extent)}; expected {_by(self.size)}, the size")
         return Frame(self.size, self.reading == "window")
+
+    def fits(self, extent: tuple[float, ...] | None) -> bool:
+        """Whether it can play on maps of some extent; of maps that differ that is not known yet."""
+        return self.reading == "window" or extent in (None, self.size)
 
     def parameter_bytes(self) -> int:
         """The bytes of all weights."""
@@ -123,7 +126,7 @@ class Policy(Settings):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _as_trained(cls, block: Any, read: ModelWrapValidatorHandler[Self]) -> Self:
+    def _as_trained(cls, block: Any, read: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
         settings = read(block)
         if settings.checkpoint != NONE and isinstance(block, dict):
             card = checkpoint.read_card(checkpoint.place_of(settings.checkpoint))
@@ -134,6 +137,9 @@ class Policy(Settings):
                 raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
             settings.hold_to(card, block)
             settings._weights = card.sha256  # noqa: SLF001  its own
+        extent: Any = (info.context or {}).get("extent")
+        if not settings.fits(extent):
+            raise Mistake(f"a network for maps of {_by(extent)} (this one is for {_by(settings.size)})")
         weighted(settings)  # whatever is wrong with the weights is told now
         return settings
 
@@ -165,6 +171,10 @@ class Policy(Settings):
                 raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
             if said[name] != value and name not in FREE:
                 raise Mistake(f"{name} {value}, with which the checkpoint was trained")
+
+
+def _by(extent: tuple[float, ...]) -> str:
+    return "x".join(map(str, extent))
 
 
 def load(settings: Policy) -> Network:

@@ -93,6 +93,10 @@ class Picture(Settings):
         """Any number."""
         return None
 
+    def extent(self) -> Cell:
+        """That of the picture."""
+        return len(self.rows), len(self.rows[0])
+
 
 def _only(letters: Array) -> Cell:
     ((row, column),) = np.argwhere(letters).tolist()

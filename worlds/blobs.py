@@ -6,11 +6,11 @@ import numpy as np
 from pydantic import Field
 
 from worlds.grid import GridConditions
-from worlds.layout import DrawnMaps, Layout
+from worlds.layout import Layout, SquareMaps
 from worlds.settings import PositiveRange, Range
 
 
-class Blobs(DrawnMaps):
+class Blobs(SquareMaps):
     """Rectangles of random size at random places, overlapping allowed, cut at the border."""
 
     size: Annotated[int, Field(ge=2)]

@@ -4,22 +4,20 @@ import numpy as np
 from pydantic import model_validator
 
 from worlds.grid import GridConditions
-from worlds.layout import DrawnMaps, Layout
-from worlds.settings import Positive, PositiveRange, Range
+from worlds.layout import Layout, SquareMaps
+from worlds.settings import PositiveRange, Range
 from worlds.types import Cell
 
 AROUND = 4
 """Two walls, and a free cell outside each."""
 
 
-class BugTrap(DrawnMaps):
+class BugTrap(SquareMaps):
     """A U of walls, one cell thick, somewhere in a free square, its mouth turned away from the goal.
 
     Lips narrow the mouth from both sides. The mouth faces any of the four directions.
     """
 
-    size: Positive
-    """Side of the square map [cells]."""
     depth: PositiveRange
     """Inner cells from the mouth to the closed end, drawn uniformly."""
     width: PositiveRange

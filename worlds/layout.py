@@ -7,7 +7,7 @@ import numpy as np
 
 from worlds.distances import FAR, distances
 from worlds.grid import GridConditions, GridWorld, manhattan
-from worlds.settings import Settings
+from worlds.settings import Positive, Settings
 from worlds.types import Array, Cell, MapError, Task
 
 MAPS = 1000
@@ -53,6 +53,21 @@ class DrawnMaps(Settings, ABC):
         """Any number."""
         del conditions
         return None
+
+    def extent(self) -> Cell | None:
+        """It differs."""
+        return None
+
+
+class SquareMaps(DrawnMaps):
+    """A family of square maps of one size."""
+
+    size: Positive
+    """Side of the square map [cells]."""
+
+    def extent(self) -> Cell:
+        """As wide as high."""
+        return self.size, self.size
 
 
 def fit(layout: Layout, conditions: GridConditions, rng: np.random.Generator) -> GridWorld | None:

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from worlds.grid import GridConditions
-from worlds.layout import DrawnMaps, Layout
+from worlds.layout import Layout, SquareMaps
 from worlds.settings import Probability
 
 
@@ -18,7 +18,7 @@ def _odd(size: int) -> int:
     return size
 
 
-class Maze(DrawnMaps):
+class Maze(SquareMaps):
     """Corridors one cell wide: the cells on even rows and columns, joined by a random spanning tree.
 
     There is no wall around the maze: everything outside a map is blocked.

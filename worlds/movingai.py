@@ -51,6 +51,9 @@ class MovingAI(Settings):
         """How many tasks fit the conditions; each one's optimum is computed once in a process."""
         return self._list(conditions).count()
 
+    def extent(self) -> None:
+        """That of the file's map."""
+
     def _scen(self) -> Path:
         return self.scen or Path(f"{self.map}.scen")
 

@@ -55,6 +55,9 @@ class Occupancy(Settings):
         del conditions
         return None
 
+    def extent(self) -> None:
+        """That of the file's map."""
+
     def _files(self) -> tuple[Header, Path]:
         header = read_header(self.map, read(self.map))
         return header, self.map.parent / header.image

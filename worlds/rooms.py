@@ -6,13 +6,13 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from worlds.grid import GridConditions
-from worlds.layout import DrawnMaps, Layout
+from worlds.layout import Layout, SquareMaps
 from worlds.settings import PositiveRange, Range
 from worlds.split import split
 from worlds.types import Array
 
 
-class Rooms(DrawnMaps):
+class Rooms(SquareMaps):
     """Rows and columns of rooms, walls one cell thick, doors one cell wide.
 
     No room is less than half as wide as if all were equal.

@@ -187,6 +187,9 @@ class MapFamily(Protocol):
     def tasks(self, conditions: Any) -> int | None:
         """How many different episodes there are; None: any number."""
 
+    def extent(self) -> tuple[float, ...] | None:
+        """The `Task.extent` of all its worlds; None: they differ, or a file has to be read to know."""
+
 
 class MapError(Mistake):
     """A map or a task that cannot be made or read; its text is one line that names the file or the family."""

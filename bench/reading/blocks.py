@@ -1,6 +1,6 @@
 """A block of a file becomes an object of its settings class, or a fault for each thing that is wrong with it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,20 +16,20 @@ from worlds.settings import Settings
 Block = TypeVar("Block", bound=Settings)
 
 
-def read_block(settings: type[Block], value: Value, folder: Path, faults: list[Fault]) -> Block | None:
+def read_block(settings: type[Block], value: Value, around: Mapping[str, Any], faults: list[Fault]) -> Block | None:
     """The settings that a value says; None where something is wrong, which is added to `faults`.
 
     Args:
         settings: the class.
         value: its block.
-        folder: relative paths start there.
+        around: pydantic's context: relative paths start at `folder`, all maps have the `extent`, if they have one.
         faults: a value that waits for an environment variable adds none.
 
     Raises:
         Unavailable: the class needs something that is not there.
     """
     try:
-        return settings.model_validate(_typed(value, shape(settings)), context={"folder": folder})
+        return settings.model_validate(_typed(value, shape(settings)), context=dict(around))
     except ValidationError as error:
         details = error.errors(include_url=False)
         faults.extend(fault for detail in details for fault in _fault(detail, value, shape(settings)))

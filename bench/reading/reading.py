@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast
 
 from bench.reading.blocks import Block, read_block
 from bench.reading.page import CONDITIONS
@@ -27,11 +27,13 @@ class Reading(Generic[Keys]):
     def __init__(self, keys: type[Keys], page: Value, folder: Path) -> None:
         """Read a page whose keys are those of a class; plug-ins and map files are relative to `folder`."""
         self.folder = folder
+        self.around: dict[str, Any] = {"folder": folder}
         self.faults: list[Fault] = []
         self.meant: set[str] = set()  # names in place of which unknown ones stand
         self.page = self.block(keys, page)
         self.kind = "grid"  # a family that cannot be found is taken for one of grids
         self.family = self._family(page.child("maps"))
+        self.around["extent"] = self.family.extent() if self.family else None
         self.conditions = self._conditions(page)
 
     def _family(self, maps: Value | None) -> MapFamily | None:
@@ -91,7 +93,7 @@ class Reading(Generic[Keys]):
 
     def block(self, settings: type[Block], value: Value) -> Block | None:
         """A block of the page."""
-        return read_block(settings, value, self.folder, self.faults)
+        return read_block(settings, value, self.around, self.faults)
 
 
 def opened(block: Value) -> Value:

@@ -29,7 +29,7 @@ class Table(NamedTuple):
         return {**self.shipped, **{name: target for name, target in others.items() if name not in self.shipped}}
 
 
-FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks"))
+FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks", "extent"))
 AGENT = Table(
     {**planners.PLANNERS, **learned.LEARNED},
     ("fogbench.planners", "fogbench.learned"),

@@ -118,6 +118,33 @@ def test_no_checkpoint_yet_is_a_reason_to_skip(tmp_path: Path) -> None:
     assert set(rows["agent"]) == {"astar"}
 
 
+def test_maps_of_another_size_are_told_before_any_episode(tmp_path: Path) -> None:
+    """Whether the size is in the file or on the card; where the maps differ in size, each episode tells."""
+    assert told("vin: {checkpoint: none, reading: map, size: [6, 8]}", tmp_path) == (
+        "6:10  agents[1].vin: got {checkpoint: none, reading: map, size: [6, 8]}; "
+        "expected a network for maps of 6x6 (this one is for 6x8)."
+    )
+    place, policy = tmp_path / "vin.safetensors", Vin(checkpoint="none", reading="map", size=(6, 8))
+    checkpoint.write(place, "Vin", policy.trained(), weighted(policy).state_dict(), {})
+    assert told("vin: {checkpoint: vin.safetensors}", tmp_path) == (
+        "6:10  agents[1].vin: got {checkpoint: vin.safetensors}; "
+        "expected a network for maps of 6x6 (this one is for 6x8)."
+    )
+    text = PAGE.replace("AGENT", "vin: {checkpoint: vin.safetensors}").replace("steps: 6", "steps: 40")
+    tunnels = "maps: {tunnel: {length: [4, 4]}}"
+    scenario = read_scenario(text.replace(text.splitlines()[1], tunnels), tmp_path / "s.yaml")
+    rows = facts(scenario, tmp_path / "results", 1)
+    sentences = rows[rows["agent"] == "vin"]["detail"]
+    assert sentences.str.fullmatch(r"Mistake: got a map of \d+x\d+; expected 6x8, the size").tolist() == [True, True]
+
+
+def test_a_variant_of_another_size_is_told(tmp_path: Path) -> None:
+    """Only the sizes that do not fit."""
+    variants = "variants: {small: {}, large: {maps: {blobs: {size: 7}}}}"
+    agent = "vin: {checkpoint: none, reading: map, size: [6, 6]}"
+    assert told(f"{agent}\n{variants}", tmp_path).endswith("expected a network for maps of 7x7 (this one is for 6x6).")
+
+
 def test_what_is_wrong_with_a_policy_is_told_at_its_place(
     saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

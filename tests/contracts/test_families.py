@@ -50,6 +50,7 @@ def test_worlds_keep_the_protocol(family: MapFamily, conditions: Conditions) -> 
     for world in sampled(family, conditions):
         task = world.task
         assert (task.kind, task.extent) == (family.kind, world.blocked.shape)
+        assert family.extent() in (None, task.extent)
         assert (world.reset().place, task.goal) == (world.start, task.goal)
         assert world.start != task.goal
         for cell in (world.start, task.goal):
