@@ -3,6 +3,7 @@
 import json
 import os
 import re
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -39,12 +40,12 @@ class Card(BaseModel):
     """How it was made, and what it reached."""
 
 
-def located(checkpoint: str, folder: Path) -> str:
+def located(checkpoint: str, whole: Callable[[str], Path]) -> str:
     """A checkpoint by its name or by the whole path of its file.
 
     Args:
         checkpoint: `none`, the name of a shipped one, or a file that ends in `.safetensors`.
-        folder: a relative file starts there.
+        whole: makes a path whole.
 
     Raises:
         Mistake: it is nothing of these, or there is no such file.
@@ -53,7 +54,7 @@ def located(checkpoint: str, folder: Path) -> str:
         if not re.fullmatch(r"[\w-]+", checkpoint):
             raise Mistake(f"{NONE}, the name of a shipped checkpoint, or a file that ends in {SUFFIX}")
         return checkpoint
-    place = (folder / checkpoint).absolute()
+    place = whole(checkpoint)
     if not os.path.isfile(place):  # noqa: PTH113  it takes any path
         raise Mistake(f"an existing file (looked for {place})")
     return str(place)

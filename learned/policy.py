@@ -6,7 +6,6 @@ unless no weight depends on it (`FREE`).
 
 from collections.abc import Container, Iterator
 from functools import lru_cache
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -26,7 +25,7 @@ from learned.checkpoint import NONE, Card
 from learned.encoding import STILL, Frame, Inputs, encode, gather
 from worlds.belief import KnownMap
 from worlds.mistake import Mistake
-from worlds.settings import Settings
+from worlds.settings import Settings, whole
 from worlds.types import Cell, Move, Observation, Task
 
 Size = Annotated[int, Field(ge=1, le=1024)]
@@ -115,7 +114,7 @@ class Policy(Settings):
     @field_validator("checkpoint")
     @classmethod
     def _found(cls, name: str, info: ValidationInfo) -> str:
-        return checkpoint.located(name, Path((info.context or {}).get("folder", "")))
+        return checkpoint.located(name, lambda path: whole(path, info))
 
     @field_validator("device")
     @classmethod

@@ -38,14 +38,25 @@ PositiveRange = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
 """`[least, most]`, both included, from 1."""
 
 
+def whole(path: str | Path, info: ValidationInfo) -> Path:
+    """The whole path of a file that a block names.
+
+    A relative one starts at the scenario's folder (validation context `folder`); one that an environment variable was
+    filled into (`filled`), where the user stands.
+    """
+    context = info.context or {}
+    folder = Path() if Path(path) in context.get("filled", ()) else context.get("folder", Path())
+    return Path(folder, path).absolute()
+
+
 def _locate(path: Path, info: ValidationInfo) -> Path:
     if not info.context:
         return path
-    place = Path(info.context["folder"], path).absolute()
+    place = whole(path, info)
     if not place.exists():
         raise ValueError(f"an existing file (looked for {place})")
     return place
 
 
 MapFile = Annotated[Path, AfterValidator(_locate)]
-"""A file; a relative path starts at the scenario's folder (validation context `folder`), where it must exist."""
+"""A file, its path made `whole`; in a scenario it must exist."""

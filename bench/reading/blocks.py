@@ -29,7 +29,8 @@ def read_block(settings: type[Block], value: Value, around: Mapping[str, Any], f
         Unavailable: the class needs something that is not there.
     """
     try:
-        return settings.model_validate(_typed(value, shape(settings)), context=dict(around))
+        filled = {Path(each.content) for each in value.below() if each.variables and isinstance(each.content, str)}
+        return settings.model_validate(_typed(value, shape(settings)), context={**around, "filled": filled})
     except ValidationError as error:
         details = error.errors(include_url=False)
         faults.extend(fault for detail in details for fault in _fault(detail, value, shape(settings)))
@@ -65,8 +66,6 @@ def _typed(value: Value, shape: Shape) -> Any:
         return {key: _typed(child, shape.at(key)) for key, child in value.content.items()}
     if value.content is None:
         return None
-    if value.variables and shape.is_a("path"):
-        return str(Path.cwd() / value.content)  # a variable's path is relative to where the user stands
     other = (
         ... if shape.is_a("boolean") else value.content
     )  # pydantic alone reads `yes` and `1` as true, and refuses `...`

@@ -94,6 +94,22 @@ def test_a_checkpoint_beside_the_scenario_is_found(saved: Path, tmp_path: Path) 
     assert (settings.checkpoint, settings.iterations) == (str(saved), 3)
 
 
+@pytest.mark.parametrize("written", ["${FOG_HERE}/vin.safetensors", "${FOG_HERE}/${FOG_VIN}.safetensors"])
+def test_a_checkpoint_with_a_variable_starts_where_the_user_stands(
+    written: str, saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a map file does; a variable may be the name of a shipped one, too."""
+    monkeypatch.chdir(tmp_path.parent)
+    monkeypatch.setenv("FOG_HERE", tmp_path.name)
+    monkeypatch.setenv("FOG_VIN", "vin")
+    elsewhere = tmp_path / "elsewhere" / "s.yaml"
+    scenario = read_scenario(PAGE.replace("AGENT", f'vin: {{checkpoint: "{written}"}}'), elsewhere)
+    settings: Any = scenario.variants[0].agents[1].settings
+    assert settings.checkpoint == str(saved)
+    scenario = read_scenario(PAGE.replace("AGENT", 'vin: {checkpoint: "${FOG_VIN}"}'), elsewhere)
+    assert scenario.variants[0].agents[1].skipped == "the checkpoint vin does not exist yet"
+
+
 def test_weights_that_are_replaced_are_other_weights(saved: Path, tmp_path: Path) -> None:
     """What was read under one digest stays what it was; read again, it is another agent with other weights."""
     text = PAGE.replace("AGENT", "vin: {checkpoint: vin.safetensors}")

@@ -128,7 +128,7 @@ def test_cards_that_cannot_be_read(place: Path) -> None:
 def test_files_that_are_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that is named must exist; a shipped name that does not yet is a reason to skip, with the nearest name."""
     with pytest.raises(Mistake) as caught:
-        located("no.safetensors", tmp_path)
+        located("no.safetensors", tmp_path.joinpath)
     assert str(caught.value) == f"an existing file (looked for {tmp_path}/no.safetensors)"
     monkeypatch.setattr(checkpoint, "SHIPPED", tmp_path)
     with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet$"):
