@@ -3,17 +3,20 @@
 Numba's own cache knows a kernel by its own file alone, so that an edit to a callee or to a constant of another file
 would go unnoticed; it raises where nothing can be written; and two processes that write at once may mix up its index.
 So each compiled form has a file of its own here, in a folder named after all the sources that kernels can come from.
+Who makes such a folder removes those beside it that nobody has used for a month; any that is missed is compiled anew.
 Of a user's kernel only its own file counts: what it calls in other files of the user is not watched.
 """
 
 import os
 import pickle
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from hashlib import sha256
 from inspect import getfile
 from pathlib import Path
+from time import time
 from typing import Any, TypeVar, cast
 from uuid import uuid4
 
@@ -31,6 +34,9 @@ HERE = Path(__file__).parent
 
 DIGEST = 32
 """Bytes of a digest, which a compiled form stands behind."""
+
+MONTH = 30 * 24 * 3600
+"""Seconds without use after which compiled kernels are removed."""
 
 _CALLBACKS: list[object] = []  # so that their code stays
 
@@ -121,6 +127,8 @@ class _Forms:
                     continue  # broken machine code would take the process down
                 form = _rebuild(context, *pickle.loads(content[DIGEST:]))  # noqa: S301  written by `save_overload`
                 self.cache_path = folder
+                with suppress(OSError):  # not ours
+                    os.utime(folder)
                 return form
         return None
 
@@ -142,10 +150,22 @@ def _write(path: Path, content: bytes) -> None:
     """Whole or not at all, whoever else writes it."""
     content = sha256(content).digest() + content
     draft = path.with_name(f"{path.name}.{uuid4().hex}")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.parent.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _clear(path.parent.parent)
     try:
         draft.write_bytes(content)
         draft.replace(path)
     except OSError:
         draft.unlink(missing_ok=True)
         raise
+
+
+def _clear(place: Path) -> None:
+    """Remove the folders of compiled kernels that nobody has used for long; whatever else is there stays."""
+    for folder in place.iterdir():
+        with suppress(OSError):  # not ours, or another process was faster
+            if re.fullmatch("[0-9a-f]{16}", folder.name) and time() - folder.stat().st_mtime > MONTH:
+                for form in folder.glob("*.nbc*"):
+                    form.unlink()
+                folder.rmdir()

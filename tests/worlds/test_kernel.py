@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -234,6 +235,42 @@ def test_processes_may_compile_at_once(folder: Path) -> None:
     assert told(result) == WARM
     assert forms(folder) == FORMS
     assert len(list(Path(result["folder"]).iterdir())) == len(FORMS)
+
+
+def test_kernels_that_nobody_uses_are_removed(folder: Path) -> None:
+    """By the next that makes a folder, after a month without use; what is newer, or nothing of ours, stays."""
+    cache = folder / "worlds" / "__pycache__"
+    days = {"0" * 16: 31, "1" * 16: 29, "2" * 16: 31, "other": 31, "3" * 40: 31}
+    for name in days:
+        (cache / name).mkdir(parents=True)
+        (cache / name / f"{name}.nbc").touch()
+    (cache / ("2" * 16) / "mine.txt").touch()
+    for name, age in days.items():
+        os.utime(cache / name, times=(time.time() - age * 24 * 3600,) * 2)
+    made = Path(end(start(folder))["folder"])
+    left = {path.relative_to(cache).as_posix() for path in cache.rglob("*") if path.is_file() and made != path.parent}
+    kept = {f"{name}/{name}.nbc" for name in ("1" * 16, "other", "3" * 40)} | {f"{'2' * 16}/mine.txt"}
+    assert {name for name in left if not name.endswith(".pyc")} == kept
+    assert not (cache / ("0" * 16)).exists()
+
+
+def test_use_keeps_kernels(folder: Path) -> None:
+    """Whoever reads them makes their folder young again; nothing is removed where no folder is made."""
+    made = Path(end(start(folder))["folder"])
+    old = made.with_name("0" * 16)
+    old.mkdir()
+    for place in (made, old):
+        os.utime(place, times=(0, 0))
+    assert told(end(start(folder))) == WARM
+    assert time.time() - made.stat().st_mtime < 3600
+    assert old.exists()
+
+
+def test_kernels_may_be_removed_at_any_moment(folder: Path) -> None:
+    """A process that runs compiles anew what it misses, and keeps it."""
+    remove = f"{SCRIPT}\nimport shutil\nfrom worlds.belief import fuse\nplace = kept(look)\nshutil.rmtree(place)\n"
+    again = "fuse(np.zeros((3, 3), np.uint8), view, 1, 1)\nassert kept(fuse) == place\nassert place.exists()"
+    assert told(end(start(folder, remove + again))) == COLD
 
 
 def test_a_kernel_without_a_file_is_compiled() -> None:
