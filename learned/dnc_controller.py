@@ -16,9 +16,9 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 from torch.nn.functional import linear
 
-from learned.dnc_controller_kernels import squash, squash_back
+from learned.dnc_controller_kernels import BACKWARD, FORWARD, squash, squash_back
 from learned.lanes import LANES, NUMBERS
-from learned.native import run
+from learned.native import blockwise, run
 
 
 class Controller(nn.Module):
@@ -59,7 +59,8 @@ class _Fast(Function):
         gates = product(inputs, weight, bias)
         h, c, tanh = cell.new_empty(3, *cell.shape)
         arrays = (part.data_ptr() for part in (gates, cell, h, c, tanh))
-        run(squash(NUMBERS[gates.dtype]), cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        loop = blockwise(squash, FORWARD, NUMBERS[gates.dtype])
+        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
         ctx.save_for_backward(inputs, weight, cell, gates, tanh)
         return h, c
 
@@ -69,7 +70,8 @@ class _Fast(Function):
         inputs, weight, cell, gates, tanh = ctx.saved_tensors
         d_h, d_c, d_gates, d_cell = d_h.contiguous(), d_c.contiguous(), torch.empty_like(gates), torch.empty_like(cell)
         arrays = (part.data_ptr() for part in (gates, cell, d_h, d_c, tanh, d_gates, d_cell))
-        run(squash_back(NUMBERS[gates.dtype]), cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        loop = blockwise(squash_back, BACKWARD, NUMBERS[gates.dtype])
+        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
         rows, d_rows = inputs.reshape(-1, inputs.shape[-1]), d_gates.reshape(-1, d_gates.shape[-1])
         return product(d_gates, weight.T), product(d_rows.T, rows.T), d_rows.sum(0), d_cell
 

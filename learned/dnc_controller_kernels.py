@@ -1,14 +1,12 @@
 """The loops of `learned.dnc_controller` over the gates of a sample, forward and backward, sixteen at a time."""
 
-from functools import lru_cache
 from typing import Any
 
-import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 
 from learned.lanes import LANES, at, put, sigmoid, tanh
-from learned.native import job, pointer, take
-from worlds.kernel import callback, fused, kernel
+from learned.native import job, pointer
+from worlds.kernel import fused, kernel
 from worlds.types import Array
 
 FORWARD = job("hidden", "gates", "cell", "h", "c", "tanh")
@@ -16,39 +14,25 @@ BACKWARD = job("hidden", "gates", "cell", "d_h", "d_c", "tanh", "d_gates", "d_ce
 """The size H, then addresses: gates [B, 4 * H], all others [B, H]; `cell` is that before the step."""
 
 
-@lru_cache
-def squash(number: type[np.floating[Any]]) -> int:
-    """The address of the loop that squashes gates where they lie and finds h, c and the tanh of c."""
-
-    def loop(address: Any) -> None:
-        job = carray(address, 1, FORWARD)[0]
-        sample, h = take(address), job.hidden
-        while sample < job.blocks:
-            squash_sample(
-                rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
-                rows(number, job.h, h, sample), rows(number, job.c, h, sample), rows(number, job.tanh, h, sample),
-            )  # fmt: skip
-            sample = take(address)
-
-    return callback(loop)
+@kernel
+def squash(number: Any, job: Any, sample: int) -> None:
+    """Squash the gates of a sample where they lie, and find h, c and the tanh of c."""
+    h = job.hidden
+    squash_sample(
+        rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
+        rows(number, job.h, h, sample), rows(number, job.c, h, sample), rows(number, job.tanh, h, sample),
+    )  # fmt: skip
 
 
-@lru_cache
-def squash_back(number: type[np.floating[Any]]) -> int:
-    """The address of the loop that finds the gradients by gates not yet squashed and by the cell."""
-
-    def loop(address: Any) -> None:
-        job = carray(address, 1, BACKWARD)[0]
-        sample, h = take(address), job.hidden
-        while sample < job.blocks:
-            squash_sample_back(
-                rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
-                rows(number, job.d_h, h, sample), rows(number, job.d_c, h, sample), rows(number, job.tanh, h, sample),
-                rows(number, job.d_gates, 4 * h, sample), rows(number, job.d_cell, h, sample),
-            )  # fmt: skip
-            sample = take(address)
-
-    return callback(loop)
+@kernel
+def squash_back(number: Any, job: Any, sample: int) -> None:
+    """Find the gradients by a sample's gates not yet squashed and by its cell."""
+    h = job.hidden
+    squash_sample_back(
+        rows(number, job.gates, 4 * h, sample), rows(number, job.cell, h, sample),
+        rows(number, job.d_h, h, sample), rows(number, job.d_c, h, sample), rows(number, job.tanh, h, sample),
+        rows(number, job.d_gates, 4 * h, sample), rows(number, job.d_cell, h, sample),
+    )  # fmt: skip
 
 
 @kernel

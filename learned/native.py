@@ -7,14 +7,17 @@ microseconds, these cost 1; threads of a second pool would have to wait for PyTo
 
 import ctypes
 from array import array
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import torch
 from llvmlite import ir
-from numba import types
+from numba import carray, types  # type: ignore[attr-defined]  # it has both
 
 from learned.lanes import instruction
+from worlds.kernel import callback
 
 _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP library and its stand-ins
 
@@ -36,6 +39,20 @@ def run(loop: int, blocks: int, *numbers: int) -> None:
 
 
 _LOOP = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
+
+
+@lru_cache
+def blockwise(work: Callable[..., None], form: np.dtype[np.void], number: type[np.floating[Any]]) -> int:
+    """The address of the loop that does `work(number, job, block)`, a kernel, for each block that it takes."""
+
+    def loop(address: Any) -> None:
+        job = carray(address, 1, form)[0]
+        block = take(address)
+        while block < job.blocks:
+            work(number, job, block)
+            block = take(address)
+
+    return callback(loop)
 
 
 @instruction

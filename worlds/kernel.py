@@ -21,6 +21,7 @@ from typing import Any, TypeVar, cast
 from uuid import uuid4
 
 import numba
+import numpy as np
 from numba import types
 from numba.core.ccallback import CFunc
 from numba.core.compiler import CompileResult
@@ -111,10 +112,10 @@ class _Forms:
         """
         self.name = f"{function.__module__}.{function.__qualname__}"
         text = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
-        held = [cell.cell_contents for cell in function.__closure__ or ()]
+        held = [_identity(cell.cell_contents) for cell in function.__closure__ or ()]
         chosen = [(name, sorted(option)) for name, option in options.items()]
         self.source = digest(text, *function.__code__.co_positions(), *held, *chosen)  # many lambdas have one name
-        self.fixed = all(isinstance(thing, type) for thing in held)
+        self.fixed = all(held)
         self.cache_path: Path | None = None
 
     def load_overload(self, signature: object, context: Any) -> Any:
@@ -144,6 +145,14 @@ class _Forms:
 
     def _file(self, folder: Path, signature: object, codegen: Any) -> Path:
         return folder / f"{self.name}-{digest(self.source, signature, codegen.magic_tuple())[:16]}.nbc"
+
+
+def _identity(thing: object) -> str:
+    """What a loop holds, in words that are the same in all processes; none for what belongs to this one."""
+    forms = getattr(thing, "_cache", None)
+    if isinstance(forms, _Forms):
+        return forms.source if forms.fixed else ""
+    return repr(thing) if isinstance(thing, type | np.dtype) else ""
 
 
 def _write(path: Path, content: bytes) -> None:

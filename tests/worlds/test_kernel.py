@@ -171,6 +171,17 @@ def test_kernels_of_a_users_file_are_kept(folder: Path) -> None:
     assert play(folder, "mine", [lines[0].replace("+ 1", "+ 2"), *lines[1:]]) == "44 19 22 0 0 0"
 
 
+def test_kernels_that_hold_kernels_are_kept(folder: Path) -> None:
+    """Each with the one that it holds, also where all share their names."""
+    lines = [
+        "def twice(f):",
+        "    return kernel(lambda x: f(f(x)))",
+        "up, down = twice(kernel(lambda x: x + 1)), twice(kernel(lambda x: x - 1))",
+        "print(up(20), down(20), *[sum(each.stats.cache_hits.values()) for each in (up, down)])",
+    ]
+    assert [play(folder, "mine", lines) for _ in range(2)] == ["22 18 0 0", "22 18 1 1"]
+
+
 def test_what_belongs_to_a_process_is_not_kept(folder: Path) -> None:
     """A kernel that holds an address, or a value that it was made with, is compiled in each process."""
     address = ["from ctypes import CDLL, c_int", "f = CDLL(None).abs", "f.argtypes, f.restype = [c_int], c_int"]
