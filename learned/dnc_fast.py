@@ -12,11 +12,11 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
 from learned.dnc_access import AccessState, Heads
-from learned.dnc_kernels import forward
-from learned.dnc_kernels_back import backward, relink
+from learned.dnc_job import JOB
 from learned.dnc_layout import Buffers, Layout, layout
+from learned.dnc_step import backward, forward, relink
 from learned.lanes import NUMBERS
-from learned.native import run
+from learned.native import blockwise, run
 
 
 def fast_access(
@@ -44,7 +44,7 @@ def _step(lies: Layout, old: Buffers, interface: Tensor) -> tuple[Buffers, Tenso
     new, reads, tape = lies.empty(interface), interface.new_empty(lies.reads), interface.new_empty(lies.tape)
     interface = interface.contiguous()
     arrays = interface.data_ptr(), *old.addresses, *new.addresses, reads.data_ptr(), tape.data_ptr()
-    run(forward(NUMBERS[tape.dtype]), lies.blocks, *lies.sizes, *arrays)
+    run(blockwise(forward, JOB, NUMBERS[tape.dtype]), lies.blocks, *lies.sizes, *arrays)
     return new, reads, tape
 
 
@@ -70,7 +70,7 @@ class _Step(Function):
             0, ctx.old.data_ptr(), links.data_ptr(), ctx.new.data_ptr(), 0, 0, ctx.tape.data_ptr(),
             d_reads.data_ptr(), *d_new.addresses, *d_old.addresses, d_interface.data_ptr(),
         )  # fmt: skip
-        run(backward(NUMBERS[ctx.tape.dtype]), lies.blocks, *lies.sizes, *arrays)
+        run(blockwise(backward, JOB, NUMBERS[ctx.tape.dtype]), lies.blocks, *lies.sizes, *arrays)
         forget_links(ctx)
         return None, None, None, d_interface, *lies.views(d_old)
 
@@ -88,7 +88,7 @@ def links_before(step: Any) -> Tensor:
         before, links_then = step.previous, links_before(step.previous)
         step.links = links_then.new_empty(links_then.shape)
         arrays = 0, before.old.data_ptr(), links_then.data_ptr(), before.new.data_ptr(), step.links.data_ptr()
-        run(relink(NUMBERS[step.tape.dtype]), step.layout.blocks, *step.layout.sizes, *arrays)
+        run(blockwise(relink, JOB, NUMBERS[step.tape.dtype]), step.layout.blocks, *step.layout.sizes, *arrays)
     links: Tensor = step.links
     return links
 

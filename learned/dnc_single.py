@@ -14,8 +14,9 @@ from torch import Tensor
 
 from learned.dnc_access import AccessState, Heads
 from learned.dnc_controller_kernels import rows, squash_sample
-from learned.dnc_kernels import SIZES, STATES, interface_size, sizes_of, state_of, step, tape_size, taped
+from learned.dnc_job import SIZES, STATES, interface_size, sizes_of, state_of, tape_size, taped
 from learned.dnc_layout import Packed, layout
+from learned.dnc_step import step
 from learned.lanes import LANES, NUMBERS
 from learned.linear import apply, matrix, vector
 from learned.native import job, run
