@@ -1,7 +1,7 @@
 """The temporal links of a memory access, forward and back: which row was written after which, and reading along them.
 
 The links are far larger than all else. So the way back passes over them once: it links a row again, follows it, and
-leaves its gradient, all while that row is at hand.
+leaves its gradient, all while that row is at hand; two rows at a time, which share what they load.
 
 Words used here
     ahead, back   [R * N], the links, and the transposed links, times a vector of rows for each read head
@@ -60,7 +60,7 @@ def follow(sizes: Sizes, heads: Array, links: Array, before: Array, weights: Arr
     ahead, back = np.empty((readers * rows, LANES), before.dtype), np.empty((readers * rows, LANES), before.dtype)
     for i in range(linked):
         clear(back)
-        for n in range(rows):
+        for n in range(0, rows, 2):
             along(rows, links[(i * rows + n) * rows :], n, before, ahead, back)
         for j in range(readers):
             mode = j * size + word + 2 + i
@@ -70,14 +70,21 @@ def follow(sizes: Sizes, heads: Array, links: Array, before: Array, weights: Arr
 
 
 @fused
-def along(rows: int, links: Array, n: int, vectors: Array, ahead: Array, back: Array) -> None:
-    """What the links of row `n` give to `ahead`, and add to `back`."""
+def along(rows: int, pair: Array, n: int, vectors: Array, ahead: Array, back: Array) -> None:
+    """What the links of row `n` and the next, if there is one, give to `ahead`, and add to `back`."""
+    last = min(n + 1, rows - 1)
     for j in range(0, len(vectors), rows):
-        x, total = at(vectors, j + n), full(vectors, 0)
+        x, y = at(vectors, j + n), at(vectors, j + last)
+        if last == n:
+            y = full(vectors, 0)
+        ahead_x, ahead_y = full(ahead, 0), full(ahead, 0)
         for m in range(rows):
-            total += at(links, m) * at(vectors, j + m)
-            add(back, j + m, at(links, m) * x)
-        put(ahead, j + n, total)
+            of_x, of_y, v = at(pair, m), at(pair, (last - n) * rows + m), at(vectors, j + m)
+            ahead_x += of_x * v
+            ahead_y += of_y * v
+            put(back, j + m, at(back, j + m) + of_x * x + of_y * y)
+        put(ahead, j + last, ahead_y)
+        put(ahead, j + n, ahead_x)
 
 
 @fused
@@ -88,32 +95,46 @@ def links_back(
     """Back through `follow` and `link`; adds to `d_weights`, and to `d_old` but for the links."""
     word, rows, readers, _, linked = sizes
     size, before = word + 2 * linked + 3, old.read_weights
-    ahead, back, row = zeros(d_read), zeros(d_read), np.empty((rows, LANES), d_read.dtype)
+    ahead, back, d_row = zeros(d_read), zeros(d_read), np.empty((rows, LANES), d_read.dtype)
+    pair = np.empty((2 * rows, LANES), d_read.dtype)
     for i in range(linked):
         w, p = weights[i * rows : (i + 1) * rows], old.precedence[i * rows : (i + 1) * rows]
         d_w, d_p = d_weights[i * rows :], d_old.precedence[i * rows :]
         precedence_back(w, p, d_new.precedence[i * rows :], d_w, d_p)
         clear(back)
-        for n in range(rows):
-            first = (i * rows + n) * rows
-            link_row(old.links[first:], n, w, p, row)
-            along(rows, row, n, d_read, ahead, back)
-            for m in range(rows):
-                put(row, m, at(d_new.links, first + m))
-            for j in range(readers):
-                modes = heads[j * size + word + 2 + i :]
-                along_back(modes, linked, n, before[j * rows :], d_read[j * rows :], row)
-            link_row_back(old.links[first:], n, w, p, row, d_old.links[first:], d_w, d_p)
+        for n in range(0, rows, 2):  # as `along` takes them
+            for k in range(n, min(n + 2, rows)):
+                link_row(old.links[(i * rows + k) * rows :], k, w, p, pair[(k - n) * rows :])
+            along(rows, pair, n, d_read, ahead, back)
+            for k in range(n, min(n + 2, rows)):
+                first = (i * rows + k) * rows
+                for m in range(rows):
+                    put(d_row, m, at(d_new.links, first + m))
+                for j in range(readers):
+                    modes = heads[j * size + word + 2 + i :]
+                    along_back(modes, linked, k, before[j * rows :], d_read[j * rows :], d_row)
+                link_row_back(old.links[first:], k, w, p, d_row, d_old.links[first:], d_w, d_p)
         for j in range(readers):
-            mode = j * size + word + 2 + i
-            backward, forward = at(heads, mode), at(heads, mode + linked)
-            d_backward, d_forward = full(heads, 0), full(heads, 0)
-            for n in range(j * rows, (j + 1) * rows):
-                d_backward += at(before, n) * at(ahead, n)
-                d_forward += at(before, n) * at(back, n)
-                add(d_old.read_weights, n, backward * at(ahead, n) + forward * at(back, n))
-            put(d_heads, mode, d_backward)
-            put(d_heads, mode + linked, d_forward)
+            mode, first = j * size + word + 2 + i, j * rows
+            modes_back(
+                heads[mode:], linked, before[first : first + rows], ahead[first:], back[first:],
+                d_heads[mode:], d_old.read_weights[first:],
+            )  # fmt: skip
+
+
+@fused
+def modes_back(
+    modes: Array, linked: int, before: Array, ahead: Array, back: Array, d_modes: Array, d_before: Array
+) -> None:
+    """Back to the modes of one read head and to what it read before; adds to that."""
+    backward, forward = at(modes, 0), at(modes, linked)
+    d_backward, d_forward = full(modes, 0), full(modes, 0)
+    for n in range(len(before)):
+        d_backward += at(before, n) * at(ahead, n)
+        d_forward += at(before, n) * at(back, n)
+        add(d_before, n, backward * at(ahead, n) + forward * at(back, n))
+    put(d_modes, 0, d_backward)
+    put(d_modes, linked, d_forward)
 
 
 @fused
