@@ -67,6 +67,22 @@ def access_both(name: str) -> Turn:
     return turn
 
 
+def chain_both(name: str) -> Turn:
+    """Ten steps in a row as in training, and the gradients by all interfaces and the first state from all reads."""
+    form, state, reads = FORMS[name], after_steps(FORMS[name]), (BATCH, HEADS.reads, HEADS.word)
+    interfaces = [torch.randn(BATCH, HEADS.interface).requires_grad_() for _ in range(STEPS)]
+    inputs, down = [*interfaces, *(part.requires_grad_() for part in state)], [torch.randn(reads) for _ in range(STEPS)]
+
+    def turn() -> object:
+        found, now = [], AccessState(*inputs[STEPS:])
+        for interface in interfaces:
+            reads, now = form(HEADS, interface, now)
+            found.append(reads)
+        return torch.autograd.grad(found, inputs, down, allow_unused=True)
+
+    return turn
+
+
 def network(name: str) -> DNC:
     """A whole DNC."""
     return DNC(INPUTS, INPUTS, HEADS, rows=ROWS, fast=name == "fast")
@@ -101,6 +117,7 @@ def single(name: str) -> Turn:
 WORK: dict[str, Callable[[str], Turn]] = {
     "memory access, forward": access_forward,
     "memory access, forward and backward": access_both,
+    f"memory access, {STEPS} steps, forward and backward": chain_both,
     f"DNC, {STEPS} steps, forward": lambda name: network_forward(network(name)),
     f"DNC, {STEPS} steps, forward and backward": lambda name: network_both(network(name)),
     "DNC, one step of one sample": single,
