@@ -52,10 +52,6 @@ class RememberingNetwork(Network):
         self.features = nn.Linear(planned + SEEN + COMPASS, settings.features)
         self.memory = settings.remember()
 
-    def plan(self, inputs: Inputs) -> Tensor:
-        """What the network makes of the image: [B, planned]."""
-        raise NotImplementedError
-
     def see(self, inputs: Inputs) -> Tensor:
         """The features [B, F] of what is seen; they depend on nothing that is remembered."""
         told = torch.cat([self.plan(inputs), inputs.sight.flatten(1), inputs.compass], 1)

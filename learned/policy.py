@@ -6,7 +6,7 @@ unless no weight depends on it (`FREE`).
 
 from collections.abc import Container, Iterator
 from functools import lru_cache
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, runtime_checkable
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, cast, runtime_checkable
 
 import numpy as np
 import torch
@@ -48,6 +48,10 @@ class Network(nn.Module):
 
     def blank(self, batch: tuple[int, ...]) -> Any:
         """The state before the first step: nested tuples of tensors [*batch, ...]."""
+        raise NotImplementedError
+
+    def plan(self, inputs: Inputs) -> Tensor:
+        """What the network makes of the image, before anything is remembered: [B, planned]."""
         raise NotImplementedError
 
     def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
@@ -224,16 +228,24 @@ class PolicyAgent:
 
     def act(self, observation: Observation) -> Move:
         """One step of the network."""
+        self.decide(self.perceive(observation))
+        return Move(self.move)
+
+    def perceive(self, observation: Observation) -> Inputs:
+        """What the network sees of an observation."""
         maps = None
         if self.stitched:
             self.stitched.update(observation)
             maps = [self.stitched.cells]
         known = gather([observation], [self.goal], [self.move], maps)
-        inputs = encode(known, self.frame).to(self.device)
-        with torch.inference_mode():
-            scores, self.state = self.network(inputs, self.state)
-            self.move = int(scores.argmax())
-        return Move(self.move)
+        return encode(known, self.frame).to(self.device)
+
+    @torch.inference_mode()
+    def decide(self, inputs: Inputs) -> Tensor:
+        """Take a step; returns the scores [1, 4] of the moves."""
+        scores, self.state = self.network(inputs, self.state)
+        self.move = int(scores.argmax())
+        return cast(Tensor, scores)
 
     def memory_bytes(self) -> int:
         """The state of the network, and the known map where it sees one."""

@@ -51,5 +51,9 @@ class VinNetwork(Network):
 
     def forward(self, inputs: Inputs, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
         """One step."""
+        return cast(Tensor, self.output(self.plan(inputs))), state
+
+    def plan(self, inputs: Inputs) -> Tensor:
+        """Q at the agent's cell: [B, 4]."""
         q, _ = self.planner(inputs.image)
-        return cast(Tensor, self.output(inputs.here(q))), state
+        return inputs.here(q)

@@ -1,0 +1,54 @@
+"""What goes on in a network as it decides: nothing is computed for it unless somebody looks."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import torch
+
+from learned.dnc import DNCState
+from learned.memory import LSTMState
+from learned.policy import PolicyAgent
+from worlds.types import Array, Move, Observation
+
+
+class Glimpse(NamedTuple):
+    """One decision, from the inside."""
+
+    image: Array
+    """[3 * H * W], what the network plans on."""
+    planned: Array
+    """[planned], what its planning module makes of that; see `Network.plan`."""
+    scores: Array
+    """[4], of the moves."""
+    held: Mapping[str, Array]
+    """What is remembered after the decision; see `held`."""
+    move: Move
+
+
+def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
+    """Let an agent decide as it always does, and look."""
+    inputs = agent.perceive(observation)
+    with torch.inference_mode():
+        planned = agent.network.plan(inputs)
+    scores = agent.decide(inputs)
+    image, planned, scores = (tensor.flatten().cpu() for tensor in (inputs.image, planned, scores))
+    return Glimpse(image.numpy(), planned.numpy(), scores.numpy(), held(agent.state), Move(agent.move))
+
+
+def held(state: Any) -> dict[str, Array]:
+    """What the state of one sample holds.
+
+    Returns:
+        `controller` [hidden], its output; of an LSTM also `cell` [hidden]; of a DNC `memory` [N * D], one row after the
+        other, and how far each row was `written` and `read` [N], the mean of the heads. Nothing of what remembers
+        nothing.
+    """
+    match state:
+        case DNCState(hidden=hidden, access=access):
+            written, read = (weights.mean(-2) for weights in (access.write_weights, access.read_weights))
+            parts = {"controller": hidden, "memory": access.memory.mT, "written": written, "read": read}
+        case LSTMState(hidden, cell):
+            parts = {"controller": hidden, "cell": cell}
+        case _:
+            parts = {}
+    return {name: part.flatten().cpu().numpy().copy() for name, part in parts.items()}
