@@ -119,6 +119,30 @@ def replay(
 
 
 @app.command()
+def look(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a shipped scenario.")],
+    agent: Annotated[str, typer.Option(help="Label of a network.")],
+    variant: Annotated[str | None, typer.Option(help="Default: the first.", show_default=False)] = None,
+    episode: Annotated[int, typer.Option(min=0, help="Number of the episode whose memory is drawn.")] = 0,
+    results: Results = Path("results"),
+) -> None:
+    """Take a network's recorded decisions again and draw what goes on in it, beside the scenario's results.
+
+    `tsne-VARIANT-AGENT.png`: its decisions by the image it sees, by what its planning module makes of that, and by its
+    scores, coloured by the optimal move. Over each panel stands how often the nearest decision of another episode has
+    the same one.
+
+    `memory-VARIANT-AGENT.png`: what its memory holds, step by step, in one episode; in a tunnel with the steps at
+    which the end wall is first in view, it turns, and it is out.
+    """
+    from bench.look import look_inside
+    from bench.session import read_all
+
+    (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
+    typer.echo(look_inside(chosen, variant, agent, episode, results / chosen.name))
+
+
+@app.command()
 def train(
     recipe: Annotated[str, typer.Argument(help="A recipe file, or the name of a shipped one (`macn-grid`).")],
     device: Annotated[Device, typer.Option(help="Where the network runs.")] = Device.cpu,

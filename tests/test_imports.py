@@ -15,7 +15,7 @@ from learned import LEARNED
 from planners import PLANNERS
 from worlds import FAMILIES, KINDS
 
-HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib"}
+HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib", "sklearn"}
 
 TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **KINDS}
 
@@ -45,11 +45,18 @@ def test_heavy_packages_would_be_noticed() -> None:
 
 @pytest.mark.parametrize(
     "code",
-    ["import bench.command", told("--help"), told("list"), told("run", "--help"), told("train", "--help")],
-    ids=["import", "--help", "list", "run --help", "train --help"],
+    [
+        "import bench.command",
+        told("--help"),
+        told("list"),
+        told("run", "--help"),
+        told("train", "--help"),
+        told("look", "--help"),
+    ],
+    ids=["import", "--help", "list", "run --help", "train --help", "look --help"],
 )
 def test_the_command_line_loads_nothing_heavy(code: str) -> None:
-    """Help and lists come at once: no torch, OMPL, MuJoCo, Numba or matplotlib."""
+    """Help and lists come at once: no torch, OMPL, MuJoCo, Numba, matplotlib or scikit-learn."""
     assert not HEAVY & loaded(code)
 
 

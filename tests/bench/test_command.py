@@ -110,7 +110,7 @@ def test_every_mistake_of_every_file_is_told_at_once(fogbench: Fogbench) -> None
 
 
 def test_a_replay_verifies_and_draws(fogbench: Fogbench) -> None:
-    """A strip and a film; an agent that was not recorded is a mistake."""
+    """A strip and a film; an agent that was not recorded is a mistake, and one that is no network has no inside."""
     write("small")
     fogbench("run", "small.yaml")
     for out in ("strip.png", "film.gif"):
@@ -119,7 +119,10 @@ def test_a_replay_verifies_and_draws(fogbench: Fogbench) -> None:
         with Image.open(out) as picture:
             assert min(picture.size) > 100
     code, _, err = fogbench("replay", "small.yaml", "--agent", "asta")
-    assert (code, err) == (2, "--agent: got asta; expected one of astar.\n")
+    assert (code, err) == (2, "--agent: got asta; expected one of astar. Did you mean astar?\n")
+    code, _, err = fogbench("look", "small.yaml", "--agent", "astar")
+    nobody = "--agent: got astar, which is no network; expected a network, and there is none that plays.\n"
+    assert (code, err) == (2, nobody)
 
 
 def test_the_other_commands_answer(fogbench: Fogbench) -> None:

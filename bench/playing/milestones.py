@@ -1,0 +1,48 @@
+"""The moments of an episode in a tunnel at which a memory is said to change (Khan et al. 2018, appendix B.3)."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import binary_opening
+
+from worlds.grid import GridWorld
+from worlds.tunnel import Tunnel
+from worlds.types import Array, Cell, MapFamily
+
+
+def milestones(family: MapFamily, world: GridWorld, path: Sequence[Cell]) -> dict[str, int]:
+    """The steps of the end wall first in view, of the turn and of the exit, by name; what did not happen is left out.
+
+    Args:
+        family: of the world; outside of tunnels there are no such moments.
+        world: of the episode.
+        path: the cell of each decision, and the last.
+
+    Returns:
+        The first decision that is taken with the end wall in view; that leads, inside of the corridor, back to a cell
+        visited before; that is taken outside of the corridor.
+    """
+    if not isinstance(family, Tunnel):
+        return {}
+    inside = corridor(world.blocked, family.width)
+    first = {place: step for step, place in reversed(list(enumerate(path)))}
+    happened = {
+        "end wall in view": [place in world.posts for place in path[:-1]],
+        "turn": [bool(inside[place]) and first[after] < first[place] for place, after in pairwise(path)],
+        "exit": [not inside[place] for place in path[:-1]],
+    }
+    return {name: steps.index(True) for name, steps in happened.items() if any(steps)}
+
+
+def corridor(blocked: Array, width: int) -> Array:
+    """The free cells [H, W] bool where no square of free cells fits that is one wider than a tunnel of some `width`.
+
+    Beyond the map all counts as free: the margin around the walls is narrower than such a square. With bends, narrow
+    pockets between the walls count as well.
+    """
+    reach = width + 1
+    free = np.pad(~blocked, reach, constant_values=True)  # [H + 2 * reach, W + 2 * reach]
+    narrow = free & ~binary_opening(free, np.ones((reach, reach)))
+    cells: Array = narrow[reach:-reach, reach:-reach]
+    return cells

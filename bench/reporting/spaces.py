@@ -1,0 +1,93 @@
+"""How well the inputs, the plans and the scores of a network tell decisions apart: in a number, and by t-SNE."""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from scipy.spatial.distance import cdist
+
+from bench.reporting.panels import COLOURS, MARKS, STYLE, Look, legend
+from worlds.mistake import Mistake
+from worlds.types import Array, Move
+
+PERPLEXITY = 30
+"""Neighbours that t-SNE gives each point; where there are few points, a third of them."""
+
+
+class Decisions(NamedTuple):
+    """Decisions of a network that had one optimal move."""
+
+    spaces: Mapping[str, Array]
+    """By name, what each decision is in some space: [n, any]."""
+    moves: Array
+    """[n] int, the optimal move."""
+    episodes: Array
+    """[n] int, where each comes from."""
+
+    def commonest(self) -> float:
+        """The share of the commonest move: what a guess that sees nothing would reach."""
+        return float(np.bincount(self.moves).max() / len(self.moves))
+
+    def separable(self) -> dict[str, float]:
+        """The separability of each space, by name."""
+        return {name: separability(points, self.moves, self.episodes) for name, points in self.spaces.items()}
+
+
+def separability(points: Array, labels: Array, groups: Array) -> float:
+    """How often the nearest neighbour has the same label (leave-one-group-out accuracy of 1-NN).
+
+    Points of a point's own group, such as the other decisions of an episode, are left out, for they are near because
+    they follow each other. Of points that are equally near, each counts for its part.
+
+    Args:
+        points: [n, any].
+        labels: [n].
+        groups: [n], at least two different ones.
+
+    Returns:
+        A share from 0 to 1.
+    """
+    distances = cdist(points, points, "sqeuclidean")  # [n, n]
+    distances[groups[:, None] == groups] = np.inf
+    nearest = distances == distances.min(1, keepdims=True)
+    alike = nearest & (labels[:, None] == labels)
+    return float((alike.sum(1) / nearest.sum(1)).mean())
+
+
+def embedded(points: Array) -> Array:
+    """The points [n, any] in a plane [n, 2], by t-SNE (van der Maaten & Hinton 2008); the same bits every time.
+
+    Raises:
+        Mistake: scikit-learn is not installed.
+    """
+    try:
+        from sklearn.manifold import TSNE  # noqa: PLC0415  an extra
+    except ModuleNotFoundError:
+        raise Mistake('t-SNE needs the extra learned: pip install ".[learned]"') from None
+    neighbours = min(PERPLEXITY, (len(points) - 1) / 3)
+    plane: Array = TSNE(perplexity=neighbours, random_state=0).fit_transform(np.asarray(points, np.float32))
+    return plane
+
+
+def spaces(planes: Iterable[tuple[str, Array, float]], moves: Array, title: str) -> Figure:
+    """A panel for each space, its points coloured by the optimal move, its separability in its title.
+
+    Args:
+        planes: name, points [n, 2] and separability of each.
+        moves: [n] int.
+        title: one line.
+    """
+    planes = list(planes)
+    looks = {move.name.lower(): Look(COLOURS[move], MARKS[move], "") for move in Move if (moves == move).any()}
+    with rc_context(STYLE):
+        figure = Figure(figsize=(3.2 * len(planes), 4.0), layout="constrained")
+        for axes, (name, points, separable) in zip(figure.subplots(1, len(planes)), planes, strict=True):
+            for move, look in looks.items():
+                x, y = points[moves == Move[move.upper()]].T
+                axes.scatter(x, y, s=9, color=look.color, marker=look.marker, alpha=0.6, linewidths=0)
+            axes.set(xticks=[], yticks=[], title=f"{name}: {100 * separable:.1f} %")
+        legend(figure, looks, lines=False)
+        figure.supxlabel(title, fontsize="medium")
+    return figure
