@@ -17,6 +17,7 @@ from bench.playing.keys import agent_key, world_key
 from bench.reading.scenario import Entry, Scenario, Variant
 from bench.reading.tables import AGENT
 from planners.astar import AStar
+from worlds.mistake import Mistake
 from worlds.streams import stream
 from worlds.types import Agent, AgentSettings, Outcome, World
 
@@ -169,7 +170,10 @@ def _warm_up(variant: Variant, entry: Entry) -> None:
     """One decision on a throw-away task in each process, so that no compilation and no first call is ever timed."""
     assert entry.settings is not None
     practice, rng = _practice(variant), episode_stream(variant, "warm-up", 0)
-    agent, state = entry.settings.start(practice.task, rng), practice.reset()
+    try:
+        agent, state = entry.settings.start(practice.task, rng), practice.reset()
+    except Mistake:  # it is not for such a map, but may be for the episode's
+        return
     observation = practice.sense(state, rng)
     action = agent.act(observation)
     agent.memory_bytes()

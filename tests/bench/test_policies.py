@@ -10,6 +10,7 @@ import torch
 
 from bench.playing.episode import SCHEMA, TIMINGS
 from bench.playing.keys import agent_key
+from bench.playing.loop import episode_world
 from bench.playing.replay import End, retrace, verify
 from bench.playing.runner import run
 from bench.playing.store import read
@@ -152,6 +153,20 @@ def test_maps_of_another_size_are_told_before_any_episode(tmp_path: Path) -> Non
     rows = facts(scenario, tmp_path / "results", 1)
     sentences = rows[rows["agent"] == "vin"]["detail"]
     assert sentences.str.fullmatch(r"Mistake: got a map of \d+x\d+; expected 6x8, the size").tolist() == [True, True]
+
+
+@pytest.mark.parametrize("size", [(14, 7), (7, 14)])
+def test_only_an_episode_s_own_map_counts(size: tuple[int, int], tmp_path: Path) -> None:
+    """A network for maps of one size plays where they have it, whatever the size of the map to warm up on."""
+    text = PAGE.replace("AGENT", f"vin: {{checkpoint: none, reading: map, size: {list(size)}}}")
+    text = text.replace(text.splitlines()[1], "maps: {tunnel: {length: [8, 8]}}").replace("steps: 6", "steps: 60")
+    scenario = read_scenario(text.replace("episodes: 2", "episodes: 6"), tmp_path / "s.yaml")
+    extents = [episode_world(scenario.variants[0], episode).task.extent for episode in range(6)]
+    rows = facts(scenario, tmp_path / "results", 1).query("agent == 'vin'").sort_values("episode")
+    assert 0 < sum(extent == size for extent in extents) < 6
+    for extent, outcome, detail in zip(extents, rows["outcome"], rows["detail"], strict=True):
+        sentence = f"Mistake: got a map of {extent[0]}x{extent[1]}; expected {size[0]}x{size[1]}, the size"
+        assert (detail == sentence) == (outcome == "CRASHED") == (extent != size)
 
 
 def test_a_variant_of_another_size_is_told(tmp_path: Path) -> None:
