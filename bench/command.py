@@ -133,7 +133,7 @@ def look(
     the same one.
 
     `memory-VARIANT-AGENT.png`: what its memory holds, step by step, in one episode; in a tunnel with the steps at
-    which the end wall is first in view, it turns, and it is out.
+    which the agent first sees the end wall, turns back, and is out.
     """
     from bench.look import look_inside
     from bench.session import read_all
@@ -154,7 +154,10 @@ def train(
         int | None, typer.Option(min=1, help="Batches, instead of what the recipe says.", show_default=False)
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Instead of the recipe's; NAME becomes NAME-seedN.", show_default=False)
+        int | None,
+        typer.Option(
+            min=0, max=2**32 - 1, help="Instead of the recipe's; NAME becomes NAME-seedN.", show_default=False
+        ),
     ] = None,
 ) -> None:
     """Train a network by a recipe; stopped at any moment, the same command goes on from there to the same weights.

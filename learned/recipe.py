@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 from pydantic import Field
 
 from worlds.grid import GridConditions
-from worlds.settings import Count, Positive, Probability, Settings
+from worlds.settings import Positive, Probability, Settings
 from worlds.types import MapFamily
 
 if TYPE_CHECKING:
@@ -70,8 +70,8 @@ class Training(Settings):
     noise: Weight = 0.0
     """Standard deviation of the noise on the controller's output that it remembers."""
     validation: Validation = Validation()
-    seed: Count = 0
-    """Fixes the first weights, the maps and all luck."""
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
 
 class Worlds(NamedTuple):

@@ -25,9 +25,6 @@ from worlds.streams import digest
 SAVED_EVERY = 120.0
 """Seconds between two savings, at most; it changes nothing but what a stop can cost."""
 
-UNTRAINED = ("checkpoint", "seed", "device")
-"""Settings of a network that its card does not tell."""
-
 KEPT = ("trials", "losses", "best", "seconds")
 """What a course remembers beside its student."""
 
@@ -99,7 +96,6 @@ class Course:
             self._keep()
 
     def _keep(self) -> None:
-        settings = self.recipe.network.model_dump(mode="json", exclude=set(UNTRAINED))
         training = {
             "recipe": self.recipe.text,
             "seed": self.recipe.training.seed,
@@ -112,7 +108,7 @@ class Course:
             **self.origin,
         }
         network, weights = type(self.recipe.network).__name__, self.student.network.state_dict()
-        checkpoint.write(self.weights, network, settings, weights, training)
+        checkpoint.write(self.weights, network, self.recipe.network.trained(), weights, training)
 
     @property
     def weights(self) -> Path:
@@ -136,12 +132,15 @@ class Course:
         put(self.folder / "log.jsonl", lines.encode())
 
     def _load(self) -> None:
-        state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
-        if state["recipe"] != digest(self.recipe.words()):
+        try:
+            state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
+            recipe, kept = state["recipe"], {name: state[name] for name in KEPT}
+        except Exception:  # noqa: BLE001  whatever a broken file does to its reader
+            raise Mistake(f"{self._state}: got a broken file; expected a training's state, or a new folder.") from None
+        if recipe != digest(self.recipe.words()):
             raise Mistake(f"{self.folder}: got a training by another recipe; expected this one's, or a new folder.")
         self.student.restore(state)
-        for name in KEPT:
-            setattr(self, name, state[name])
+        vars(self).update(kept)
 
 
 def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:

@@ -91,6 +91,15 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     )
 
 
+def test_a_seed_out_of_range_is_told(train: Fogbench) -> None:
+    """By the command line and by the recipe's reader, in a line each."""
+    code, _, err = train("small.yaml", "--seed", str(2**32))
+    assert code == 2
+    assert "4294967295" in err
+    Path("small.yaml").write_text(RECIPE + f"seed: {2**32}\n")
+    assert train("small.yaml")[0] == 2
+
+
 def test_a_device_that_is_not_there_is_told(train: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
     """Before anything is written."""
     monkeypatch.setattr("torch.cuda.is_available", lambda: False)

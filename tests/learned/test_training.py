@@ -205,3 +205,14 @@ def test_a_shipped_recipe_trains(path: Path, tmp_path: Path) -> None:
     after = student.network.state_dict().values()
     changed = [not torch.equal(a, b) for a, b in zip(before, after, strict=True)]
     assert sum(changed) >= len(changed) - 1
+
+
+@pytest.mark.parametrize("broken", [b"", b"no zip", None])
+def test_a_broken_state_is_refused(broken: bytes | None, tmp_path: Path) -> None:
+    """In one line, whether it is empty, something else, or cut short."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    state = tmp_path / "state.pt"
+    state.write_bytes(state.read_bytes()[:-500] if broken is None else broken)
+    with pytest.raises(Mistake) as caught:
+        Course(recipe(batches=1), tmp_path, {})
+    assert str(caught.value) == f"{state}: got a broken file; expected a training's state, or a new folder."
