@@ -9,7 +9,8 @@ from learned.dnc import DNC
 from learned.dnc_access import Heads
 from learned.dnc_controller import Controller
 from learned.encoding import COMPASS, SEEN, Inputs
-from learned.policy import Network, Policy, Size
+from learned.network import Network
+from learned.policy import Policy, Size
 from learned.value_iteration import ACTIONS
 
 

@@ -4,9 +4,9 @@ A setting that a scenario does not give is as in the checkpoint's card; one that
 unless no weight depends on it (`FREE`).
 """
 
-from collections.abc import Container, Iterator
+from collections.abc import Container
 from functools import lru_cache
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, cast, runtime_checkable
+from typing import Annotated, Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 import torch
@@ -18,11 +18,12 @@ from pydantic import (
     field_validator,
     model_validator,
 )
-from torch import Tensor, nn
+from torch import Tensor
 
 from learned import checkpoint
 from learned.checkpoint import NONE, Card
 from learned.encoding import STILL, Frame, Inputs, encode, gather
+from learned.network import Network, settled, tensors
 from worlds.belief import KnownMap
 from worlds.mistake import Mistake
 from worlds.settings import Settings, whole
@@ -33,30 +34,6 @@ Size = Annotated[int, Field(ge=1, le=1024)]
 
 FREE = frozenset({"checkpoint", "seed", "device", "iterations", "memory_rows"})
 """Settings that may differ from those of the training."""
-
-
-@runtime_checkable
-class Settling(Protocol):
-    """**Protocol:** a part of a network that decides faster once its weights no longer change."""
-
-    def settle(self) -> None:
-        """From now on they do not."""
-
-
-class Network(nn.Module):
-    """A network that takes one step at a time."""
-
-    def blank(self, batch: tuple[int, ...]) -> Any:
-        """The state before the first step: nested tuples of tensors [*batch, ...]."""
-        raise NotImplementedError
-
-    def plan(self, inputs: Inputs) -> Tensor:
-        """What the network makes of the image, before anything is remembered: [B, planned]."""
-        raise NotImplementedError
-
-    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
-        """From what is seen and the state before to the scores [B, 4] of the moves and the state after."""
-        raise NotImplementedError
 
 
 class Policy(Settings):
@@ -205,14 +182,6 @@ def weighted(settings: Policy) -> Network:
     return settled(load(settings))
 
 
-def settled(network: Network) -> Network:
-    """A network whose weights will not change any more."""
-    for part in network.requires_grad_(False).modules():
-        if isinstance(part, Settling):
-            part.settle()
-    return network
-
-
 class PolicyAgent:
     """One episode of a network, which takes the move of the highest score; of equals, the first."""
 
@@ -255,20 +224,3 @@ class PolicyAgent:
     def search_nodes(self) -> int:
         """There is no search."""
         return 0
-
-
-def tensors(state: Any) -> Iterator[Tensor]:
-    """All tensors of a network's state."""
-    if isinstance(state, Tensor):
-        yield state
-    else:
-        for part in state:
-            yield from tensors(part)
-
-
-def rows(state: Any, kept: Tensor) -> Any:
-    """The state of some samples of a batch: those of the numbers, or of the truth values, in `kept`."""
-    if isinstance(state, Tensor):
-        return state[kept]
-    parts = (rows(part, kept) for part in state)
-    return type(state)(*parts) if hasattr(state, "_fields") else tuple(parts)

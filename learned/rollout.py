@@ -16,7 +16,8 @@ import torch
 from torch import Tensor
 
 from learned.encoding import SIGHT, STILL, Known, encode, gather
-from learned.policy import Network, Policy, rows
+from learned.network import Network, rows
+from learned.policy import Policy
 from planners.optimal import OptimalMoves
 from worlds.belief import KnownMap
 from worlds.grid import GridWorld

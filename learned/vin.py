@@ -9,7 +9,8 @@ from pydantic import Field
 from torch import Tensor, nn
 
 from learned.encoding import CHANNELS, Inputs
-from learned.policy import Network, Policy
+from learned.network import Network
+from learned.policy import Policy
 from learned.value_iteration import ACTIONS, ValueIteration
 from worlds.settings import Probability
 

@@ -14,7 +14,8 @@ from learned.dnc import DNC
 from learned.encoding import CHANNELS, COMPASS, SIGHT, Inputs
 from learned.macn import Macn
 from learned.memory import LSTM, FeedForward
-from learned.policy import Policy, settled
+from learned.network import settled
+from learned.policy import Policy
 from learned.value_iteration import ValueIteration, plain
 from learned.vin import Vin
 

@@ -12,7 +12,8 @@ from pydantic import ValidationError
 
 from learned.cnn_memory import CnnMemory
 from learned.macn import Macn
-from learned.policy import Network, Policy, PolicyAgent, weighted
+from learned.network import Network
+from learned.policy import Policy, PolicyAgent, weighted
 from learned.vin import Vin
 from worlds.mistake import Mistake, Unavailable
 from worlds.types import Move, Task
