@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 import pandas as pd
@@ -125,7 +125,7 @@ def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame) -> Decisions:
     """Every decision, or every so many, that had one optimal move on the agent's own known map."""
     every = max(1, -(-int(rows["steps"].sum()) // DECISIONS))
     kept, count = list[tuple["Glimpse", int, int]](), 0
-    for row in _tracked(rows.to_dict("records"), "replaying"):
+    for row in _tracked(cast(list[dict[str, Any]], rows.to_dict("records")), "replaying"):
         optimal = OptimalMoves(episode_world(variant, row["episode"]).task)
         for moment, seen in _watch(variant, entry, row):
             observation = moment.observation

@@ -43,6 +43,6 @@ def corridor(blocked: Array, width: int) -> Array:
     """
     reach = width + 1
     free = np.pad(~blocked, reach, constant_values=True)  # [H + 2 * reach, W + 2 * reach]
-    narrow = free & ~binary_opening(free, np.ones((reach, reach)))
+    narrow = free & ~binary_opening(free, np.ones((reach, reach), np.bool_))
     cells: Array = narrow[reach:-reach, reach:-reach]
     return cells

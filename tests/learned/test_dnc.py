@@ -382,7 +382,7 @@ def test_a_single_step_is_that_with_gradients(links: bool, batch: tuple[int, ...
     torch.manual_seed(0)
     network = DNC(3, 5, Heads(2, 2, 4, links), rows=6, hidden=16, clip=1).to(dtype)
     with torch.no_grad():
-        for parameter in network.parameters():
+        for parameter in (*network.controller.parameters(), *network.output.parameters()):
             parameter.mul_(8)
     sequence = torch.randn(*batch, 7, 3, dtype=dtype)
     expected = network(sequence)
