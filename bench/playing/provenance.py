@@ -107,7 +107,7 @@ def _now() -> str:
 def circumstances() -> dict[str, Any]:
     """The command, the commit, the machine and the versions."""
     return {
-        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "command": shlex.join(["fogbench", *sys.argv[1:]]),
         "commit": _commit(),
         "cpu": _cpu(),
         "cores": os.cpu_count(),
