@@ -70,7 +70,7 @@ class Training(Settings):
     noise: Weight = 0.0
     """Standard deviation of the noise on the controller's output that it remembers."""
     validation: Validation = Validation()
-    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0
     """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
 

@@ -154,7 +154,7 @@ BROKEN = [
         "radius: ${FOG_NO}",
         ["6:19  got broken YAML (expected ',' or '}', but got '{'); expected one YAML document."],
     ),
-    ("seed: 2", "seed: -1", ["15:7  seed: got -1; expected a whole number of at least 0."]),
+    ("seed: 2", "seed: -1", ["15:7  seed: got -1; expected a whole number from 0 to 4294967295."]),
     ("seed: 2", "lessons: 32x32", ["15:10  lessons: got 32x32; expected a list."]),
     ("seed: 2", "lessons: [{32x32: 1}]", ["15:11  lessons[0]: got {32x32: 1}; expected text."]),
     (
