@@ -33,7 +33,7 @@ texts = [(text, Path("networks.yaml")), *((path.read_text("utf-8"), path) for pa
 for text, path in texts:
     scenario = read_scenario(text, path)
     for variant in scenario.variants[:1]:
-        for entry in variant.agents:
+        for entry in (entry for entry in variant.agents if entry.settings):
             outcomes.add((entry.target, play(scenario, variant, entry, 0, 1).outcome))
 
 module = ValueIteration(2, 5)
