@@ -122,8 +122,8 @@ def _learned() -> dict[str, str]:
     except ModuleNotFoundError:
         return {}
     from learned.dnc import DNC  # noqa: PLC0415  it needs the extra
-    from learned.dnc_access import Heads  # noqa: PLC0415
-    from learned.value_iteration import ValueIteration  # noqa: PLC0415
+    from learned.dnc_access import Heads  # noqa: PLC0415  likewise
+    from learned.value_iteration import ValueIteration  # noqa: PLC0415  likewise
 
     return {
         "value iteration, 128 maps of 16x16, 20 times": _both_ways(ValueIteration(2, 20), torch.rand(128, 2, 16, 16)),

@@ -18,8 +18,8 @@ from learned.dnc_job import SIZES, STATES, interface_size, sizes_of, state_of, t
 from learned.dnc_layout import Packed, layout
 from learned.dnc_step import step
 from learned.lanes import LANES, NUMBERS
-from learned.linear import apply, matrix, vector
-from learned.native import job, run
+from learned.linear import apply
+from learned.native import job, matrix, run, vector
 from worlds.kernel import callback, kernel
 from worlds.types import Array
 

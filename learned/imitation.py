@@ -156,7 +156,7 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
 
 def draw_episode(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Episode:
     """The episode of a number, on a map of `family`; that of another purpose shares no luck with it."""
-    map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {part}", number) for part in ("map", "luck"))
+    map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {what}", number) for what in ("map", "luck"))
     return Episode(cast(GridWorld, family.sample(map_luck, number, worlds.conditions)), luck)
 
 

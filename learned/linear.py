@@ -1,24 +1,9 @@
-"""Linear layers of one sample in compiled loops, and the arrays at the addresses of a job."""
+"""Linear layers of one sample in compiled loops."""
 
 from typing import Any
 
-from numba import carray  # type: ignore[attr-defined]  # it does
-
-from learned.native import pointer
 from worlds.kernel import kernel, summing
 from worlds.types import Array
-
-
-@kernel
-def vector(number: Any, address: int, size: int) -> Array:
-    """[size] there."""
-    return carray(pointer(address), (size,), number)
-
-
-@kernel
-def matrix(number: Any, address: int, height: int, width: int) -> Array:
-    """[height, width] there."""
-    return carray(pointer(address), (height, width), number)
 
 
 @kernel

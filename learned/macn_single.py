@@ -1,6 +1,10 @@
 """What a MACN makes of one image, without gradients, in one call: the reward map, value iteration, and the features.
 
 For one sample, calls of PyTorch take longer than most of what they do.
+
+Words used here
+    H, W    rows and columns of the image
+    F       features
 """
 
 from functools import lru_cache
@@ -12,8 +16,8 @@ from torch import Tensor
 
 from learned.encoding import CHANNELS, COMPASS, SEEN, Inputs
 from learned.lanes import NUMBERS
-from learned.linear import apply, matrix, vector
-from learned.native import job, pointer, run
+from learned.linear import apply
+from learned.native import job, matrix, pointer, run, vector
 from learned.value_iteration_forward import correlate, forward_block
 from learned.value_iteration_planes import pack, plane_size, planes, unpack
 from worlds.kernel import callback, kernel
@@ -41,6 +45,7 @@ class Weights(NamedTuple):
 
 def see(weights: Weights, iterations: int, inputs: Inputs) -> Tensor:
     """The features [1, F] of what is seen."""
+    inputs = Inputs(*(part.contiguous() for part in inputs))
     y = inputs.image.new_empty(1, len(weights.features))
     run(
         loop(NUMBERS[y.dtype]), 1, *inputs.image.shape[2:], iterations, y.shape[1],

@@ -17,7 +17,8 @@ from llvmlite import ir
 from numba import carray, types  # type: ignore[attr-defined]  # it has both
 
 from learned.lanes import instruction
-from worlds.kernel import callback
+from worlds.kernel import callback, kernel
+from worlds.types import Array
 
 _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP library and its stand-ins
 
@@ -74,3 +75,15 @@ def pointer(_: Any, _address: Any) -> Any:
         return builder.inttoptr(values[0], ir.IntType(8).as_pointer())
 
     return types.voidptr(types.int64), build
+
+
+@kernel
+def vector(number: Any, address: int, size: int) -> Array:
+    """[size] there."""
+    return carray(pointer(address), (size,), number)
+
+
+@kernel
+def matrix(number: Any, address: int, height: int, width: int) -> Array:
+    """[height, width] there."""
+    return carray(pointer(address), (height, width), number)

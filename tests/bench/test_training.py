@@ -97,7 +97,12 @@ def test_a_seed_out_of_range_is_told(train: Fogbench) -> None:
     assert code == 2
     assert "4294967295" in err
     Path("small.yaml").write_text(RECIPE + f"seed: {2**32}\n")
-    assert train("small.yaml")[0] == 2
+    code, _, err = train("small.yaml")
+    assert code == 2
+    assert err == (
+        f"small.yaml:{len(RECIPE.splitlines()) + 1}:7  seed: got 4294967296; "
+        "expected a whole number from 0 to 4294967295.\n"
+    )
 
 
 def test_a_device_that_is_not_there_is_told(train: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
