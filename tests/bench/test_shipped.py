@@ -1,10 +1,11 @@
 """Where scenarios are found."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from bench.shipped import find, folder
+from bench.shipped import RECIPES, find, find_recipe, folder
 from worlds.mistake import Mistake
 
 
@@ -39,3 +40,15 @@ def test_a_name_of_nothing_is_told_with_the_nearest(name: str, near: str) -> Non
         f"{name}: got no such file; expected a scenario file, a folder of them, or one of {shipped}. "
         f"Did you mean {near}?"
     )
+
+
+@pytest.mark.parametrize("card", sorted(RECIPES.with_name("checkpoints").glob("*.json")), ids=lambda card: card.stem)
+def test_shipped_weights_are_those_of_the_shipped_recipes(card: Path) -> None:
+    """Their card has the recipe's text as it is now, and the command that makes them, from a commit without changes."""
+    training = json.loads(card.read_text("utf-8"))["training"]
+    name, _, seed = card.stem.partition("-seed")
+    assert training["recipe"] == find_recipe(name).read_text("utf-8")
+    assert training["command"] == f"fogbench train {name}" + (f" --seed {seed}" if seed else "")
+    assert training["seed"] == int(seed or 0)
+    assert not training["commit"].endswith("-dirty")
+    assert card.with_suffix(".safetensors").stat().st_size <= 4_000_000
