@@ -40,7 +40,7 @@ class Published(Settings):
     reference_ratio: Numbers
     """Path length over that of a reference agent."""
     test_error: Numbers
-    """Share of wrong decisions [%]."""
+    """Share of wrong decisions."""
 
 
 class Page(Settings):

@@ -11,22 +11,12 @@ import pandas as pd
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from bench.reading.scenario import Scenario
-from bench.reporting.curves import Bin, Steps, by_distance, distance_bins, success_by_seconds, success_by_steps
+from bench.reporting.curves import Steps, success_by_seconds, success_by_steps
+from bench.reporting.distance_plot import Frames, against_distance
 from bench.reporting.panels import STYLE, Looks, legend, looks_of, panels_of, percent
-from bench.reporting.tables import scaled
 from worlds.types import Array
-
-Frames = Mapping[str, pd.DataFrame]
-"""The episodes of each variant."""
-
-LENGTHS = {"grid": "cells", "graph": "edges", "robot": "m"}
-"""The unit of length, by the kind of world."""
-
-LEAST_MEMORY = 256
-"""The axis of memory is logarithmic above, so that agents that carry nothing have a place too [bytes]."""
 
 
 def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: Path) -> list[str]:
@@ -58,8 +48,7 @@ def draw_figures(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -
             "path_ratio.png": path_ratio(table, played),
             "success_by_steps.png": success_against_steps(frames, played),
             "success_by_seconds.png": success_against_seconds(frames, played),
-            "success_by_distance.png": success_against_distance(frames, played),
-            "memory_by_distance.png": memory_against_distance(frames, played),
+            "by_distance.png": against_distance(frames, played, scenario),
         }
 
 
@@ -99,31 +88,6 @@ def success_against_seconds(frames: Frames, looks: Looks) -> Figure:
         spent = np.concatenate([[], *(curve.budget for curve in curves.values())])
         axes.set_xscale("log")
         _staircases(axes, curves, looks, *_around(spent))
-    return figure
-
-
-def success_against_distance(frames: Frames, looks: Looks) -> Figure:
-    """Success against goal distance, with Wilson's interval as a band."""
-    figure, panels = panels_of(frames, looks, _distance(frames), "success [%]")
-    for axes, agent, bins in _binned(panels, frames, looks):
-        shares = np.array([each.success.times(100)[:3] for each in bins])  # [bins, 3] value, low, high
-        distance = [each.distance for each in bins]
-        axes.plot(distance, shares[:, 0], **looks[agent]._asdict())
-        axes.fill_between(distance, shares[:, 1], shares[:, 2], color=looks[agent].color, alpha=0.12, linewidth=0)
-        percent(axes)
-    return figure
-
-
-def memory_against_distance(frames: Frames, looks: Looks) -> Figure:
-    """Bytes carried from one decision to the next, against goal distance."""
-    figure, panels = panels_of(frames, looks, _distance(frames), "peak memory")
-    for axes, agent, bins in _binned(panels, frames, looks):
-        distance, carried = [each.distance for each in bins], [each.peak_memory for each in bins]
-        axes.plot(distance, carried, clip_on=False, **looks[agent]._asdict())
-    for axes in panels:
-        axes.set_yscale("symlog", base=2, linthresh=LEAST_MEMORY)
-        axes.set_ylim(bottom=0)
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda size, _: scaled(size, "bytes")))
     return figure
 
 
@@ -172,16 +136,3 @@ def _cells(episodes: pd.DataFrame, looks: Looks) -> Iterator[tuple[str, pd.DataF
         cell = episodes[episodes["agent"] == agent]
         if len(cell):
             yield agent, cell
-
-
-def _binned(panels: Sequence[Axes], frames: Frames, looks: Looks) -> Iterator[tuple[Axes, str, list[Bin]]]:
-    """The bins of each agent, with the panel of its variant; all agents of a variant have the same edges."""
-    for axes, episodes in zip(panels, frames.values(), strict=True):
-        edges = distance_bins(episodes)
-        for agent, cell in _cells(episodes, looks):
-            yield axes, agent, by_distance(cell, edges)
-
-
-def _distance(frames: Frames) -> str:
-    kinds = dict.fromkeys(kind for episodes in frames.values() for kind in episodes["kind"].unique())
-    return f"goal distance [{', '.join(LENGTHS.get(kind, kind) for kind in kinds)}]"

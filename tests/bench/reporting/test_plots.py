@@ -22,7 +22,7 @@ Make = Callable[..., Scenario]
 
 PANELS = {
     "success.png": 1, "path_ratio.png": 2, "success_by_steps.png": 2, "success_by_seconds.png": 2,
-    "success_by_distance.png": 2, "memory_by_distance.png": 2,
+    "by_distance.png": 4,
 }  # fmt: skip
 """How many panels each plot of two variants has."""
 
@@ -63,7 +63,7 @@ def test_every_plot_has_its_panels(frame: pd.DataFrame, make: Make) -> None:
 def test_plots_are_pictures_whatever_was_recorded(
     chosen: slice, frame: pd.DataFrame, make: Make, tmp_path: Path
 ) -> None:
-    """Two variants, one variant, one success, and one failure: six PNGs with something on them."""
+    """Two variants, one variant, one success, and one failure: five PNGs with something on them."""
     frame, scenario = frame[chosen], make()
     assert draw(frame, summary(frame, scenario), scenario, tmp_path) == list(PANELS)
     for name in PANELS:
@@ -112,10 +112,21 @@ def test_the_curve_of_time_has_a_logarithmic_axis_around_all_successes(frame: pd
 
 def test_memory_says_its_unit(frame: pd.DataFrame, make: Make) -> None:
     """Ticks are sizes, and nothing carried has its place on the axis."""
-    axes = figures(frame, make())["memory_by_distance.png"].axes[0]
+    axes = figures(frame, make())["by_distance.png"].axes[2]
     assert axes.yaxis.get_major_formatter()(4096) == "4 KiB"
     assert axes.get_ylim()[0] == 0
     assert axes.figure.get_supxlabel() == "goal distance [cells]"
+
+
+def test_goals_ever_farther_away_share_one_axis(frame: pd.DataFrame, make: Make) -> None:
+    """Variants of one map family without a distance in common: one line of each agent runs through them all."""
+    scenario = make()
+    frame.loc[frame["variant"] == "short", "shortest"] += 100
+    success, memory = figures(frame, scenario)["by_distance.png"].axes
+    assert success.get_title() == "long … short"
+    assert curve(success, scenario, "astar") == ([3.5, 103.5], [100, 100])
+    assert curve(memory, scenario, "memoryless")[0] == [3.5, 103.5]
+    assert memory.get_xscale() == "log"
 
 
 def test_drawing_leaves_the_settings_of_matplotlib_alone(frame: pd.DataFrame, make: Make, tmp_path: Path) -> None:
