@@ -4,11 +4,16 @@ from itertools import pairwise
 from typing import cast
 
 from torch import Tensor, nn
+from torch.nn.functional import pad
 
 from learned.encoding import CHANNELS, Inputs
 from learned.memory import Remembering, RememberingNetwork
 from learned.policy import Size
 from learned.value_iteration import ACTIONS
+
+
+ALIKE = 16
+"""Batches are filled up to a multiple: a batch shrinks as its episodes end, and oneDNN prepares for each new size."""
 
 
 class CnnMemory(Remembering):
@@ -35,4 +40,7 @@ class CnnMemoryNetwork(RememberingNetwork):
 
     def plan(self, inputs: Inputs) -> Tensor:
         """The maps of the last layer: [B, 4 * H * W]."""
-        return cast(Tensor, self.convolutions(inputs.image)).flatten(1)
+        batch = len(inputs.image)
+        filled = -batch % ALIKE if batch > 1 else 0
+        image = pad(inputs.image, (0, 0) * 3 + (0, filled))  # [B + filled, 3, H, W]
+        return cast(Tensor, self.convolutions(image))[:batch].flatten(1)
