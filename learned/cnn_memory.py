@@ -11,7 +11,6 @@ from learned.memory import Remembering, RememberingNetwork
 from learned.policy import Size
 from learned.value_iteration import ACTIONS
 
-
 ALIKE = 16
 """Batches are filled up to a multiple: a batch shrinks as its episodes end, and oneDNN prepares for each new size."""
 
