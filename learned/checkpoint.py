@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
@@ -14,7 +13,7 @@ from safetensors.torch import load, save
 from torch import Tensor, nn
 
 from worlds.files import put, sha256
-from worlds.mistake import Mistake, Unavailable
+from worlds.mistake import Mistake
 
 SHIPPED = Path(__file__).with_name("checkpoints")
 """Where the checkpoints are that go by a name alone."""
@@ -51,8 +50,10 @@ def located(checkpoint: str, whole: Callable[[str], Path]) -> str:
         Mistake: it is nothing of these, or there is no such file.
     """
     if not checkpoint.endswith(SUFFIX):
-        if not re.fullmatch(r"[\w-]+", checkpoint):
-            raise Mistake(f"{NONE}, the name of a shipped checkpoint, or a file that ends in {SUFFIX}")
+        names = [NONE, *sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))]
+        if checkpoint not in names:
+            near = get_close_matches(checkpoint, names, n=1)
+            raise Mistake(f"a file that ends in {SUFFIX}, or one of {', '.join(names)}", *near)
         return checkpoint
     place = whole(checkpoint)
     if not os.path.isfile(place):  # noqa: PTH113  it takes any path
@@ -61,19 +62,8 @@ def located(checkpoint: str, whole: Callable[[str], Path]) -> str:
 
 
 def place_of(checkpoint: str) -> Path:
-    """The file of weights of a checkpoint that was `located`.
-
-    Raises:
-        Unavailable: no checkpoint of that name is shipped yet.
-    """
-    if checkpoint.endswith(SUFFIX):
-        return Path(checkpoint)
-    place = SHIPPED / f"{checkpoint}{SUFFIX}"
-    if not place.exists():
-        names = [NONE, *sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))]
-        near = "".join(f"; did you mean {name}?" for name in get_close_matches(checkpoint, names, n=1))
-        raise Unavailable(f"the checkpoint {checkpoint} does not exist yet{near}")
-    return place
+    """The file of weights of a checkpoint that was `located`."""
+    return Path(checkpoint) if checkpoint.endswith(SUFFIX) else SHIPPED / f"{checkpoint}{SUFFIX}"
 
 
 def read_card(place: Path) -> Card:

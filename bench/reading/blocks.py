@@ -10,7 +10,6 @@ from pydantic_core import ErrorDetails
 
 from bench.reading.positions import Fault, Value
 from bench.reading.shapes import Shape, shape
-from worlds.mistake import Unavailable
 from worlds.settings import Settings
 
 Block = TypeVar("Block", bound=Settings)
@@ -24,9 +23,6 @@ def read_block(settings: type[Block], value: Value, around: Mapping[str, Any], f
         value: its block.
         around: pydantic's context: relative paths start at `folder`, all maps have the `extent`, if they have one.
         faults: a value that waits for an environment variable adds none.
-
-    Raises:
-        Unavailable: the class needs something that is not there.
     """
     try:
         filled = {Path(each.content) for each in value.below() if each.variables and isinstance(each.content, str)}
@@ -35,8 +31,6 @@ def read_block(settings: type[Block], value: Value, around: Mapping[str, Any], f
         details = error.errors(include_url=False)
         faults.extend(fault for detail in details for fault in _fault(detail, value, shape(settings)))
         return None
-    except Unavailable:
-        raise
     except Exception as error:  # noqa: BLE001  a user's class may raise anything
         if not any(inner.unset for inner in value.below()):
             faults.append(value.wrong(f"settings that its class can read; it raises {raised(error)}"))
@@ -84,7 +78,8 @@ def _fault(detail: ErrorDetails, value: Value, shape: Shape) -> list[Fault]:
     told = detail.get("ctx", {}).get("error")
     expected = " ".join(str(told).split()) if told is not None else around.words() or detail["msg"]
     text, choices = found.content if isinstance(found.content, str) else "", around.choices()
-    return [found.wrong(expected.rstrip("."), "" if text in choices else near(text, choices))]
+    meant = getattr(told, "near", "") or ("" if text in choices else near(text, choices))
+    return [found.wrong(expected.rstrip("."), meant)]
 
 
 def _lacking(holder: Value, shape: Shape, key: str) -> Fault:

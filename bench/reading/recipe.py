@@ -15,7 +15,7 @@ from bench.reading.reading import Reading, opened
 from bench.reading.scenario import wrong
 from bench.reading.tables import NETWORK
 from learned.recipe import Lesson, Recipe, Training, Worlds
-from worlds.mistake import Mistake, Unavailable
+from worlds.mistake import Mistake
 from worlds.types import MapFamily
 
 if TYPE_CHECKING:
@@ -97,11 +97,7 @@ class RecipeReading(LessonReading):
         self.faults += [block.wrong_key(key, told) for key, told in ELSEWHERE.items() if key in block.fields()]
         own = {key: value for key, value in block.fields().items() if key not in ELSEWHERE}
         fresh = {"checkpoint": replace(block, content="none")}
-        try:
-            return cast("Policy | None", self.block(found, replace(block, content=fresh | own)))
-        except Unavailable as lack:
-            self.faults.append(block.fields()["checkpoint"].wrong(f"one that is there; {lack}"))
-            return None
+        return cast("Policy | None", self.block(found, replace(block, content=fresh | own)))
 
 
 def read_recipe(text: str, path: Path) -> Recipe:

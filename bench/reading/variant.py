@@ -9,7 +9,6 @@ from bench.reading.page import Page
 from bench.reading.positions import Value
 from bench.reading.reading import Reading
 from bench.reading.tables import AGENT
-from worlds.mistake import Unavailable
 from worlds.types import AgentSettings
 
 
@@ -50,10 +49,7 @@ class VariantReading(Reading[Page]):
         place, found, missing = self.find(AGENT, name, wrong)
         if found is None:
             return Listed(label, place, None, missing) if missing else None
-        try:
-            settings = cast(AgentSettings | None, self.block(found, block))
-        except Unavailable as lack:
-            return Listed(label, place, None, str(lack))
+        settings = cast(AgentSettings | None, self.block(found, block))
         kinds = cast(AgentSettings, found).kinds
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
         return Listed(label, place, settings, skipped) if settings else None

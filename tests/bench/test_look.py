@@ -11,7 +11,7 @@ from PIL import Image
 from bench.look import look_inside
 from bench.playing.loop import lost, play
 from bench.playing.store import recording
-from bench.reading.scenario import Scenario
+from bench.reading.scenario import Entry, Scenario
 from worlds.mistake import Mistake
 from worlds.types import Move, Outcome
 
@@ -20,7 +20,6 @@ AGENTS: list[Any] = [
     {"macn": {"checkpoint": "none"}},
     {"macn": {"checkpoint": "none", "memory": "lstm", "label": "MACN (LSTM)"}},
     {"vin": {"checkpoint": "none"}},
-    {"macn": {"checkpoint": "nobody", "label": "later"}},
 ]
 
 
@@ -28,7 +27,9 @@ AGENTS: list[Any] = [
 def tunnels(make: Callable[..., Scenario]) -> Scenario:
     """Networks with fresh weights in short tunnels, where a collision costs a step."""
     maps = {"tunnel": {"length": [6, 6]}}
-    return make(maps=maps, tasks={"distance": [1, 60]}, rules={"collision": "blocked"}, agents=AGENTS)
+    scenario = make(maps=maps, tasks={"distance": [1, 60]}, rules={"collision": "blocked"}, agents=AGENTS)
+    absent = Entry("absent", "", None, "needs the package x, which is not installed")
+    return replace(scenario, variants=tuple(replace(v, agents=(*v.agents, absent)) for v in scenario.variants))
 
 
 @pytest.fixture
@@ -89,7 +90,7 @@ def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_p
     ("agent", "why", "meant"),
     [
         ("astar", ", which is no network", ""),
-        ("later", ", which is skipped (the checkpoint nobody does not exist yet)", ""),
+        ("absent", ", which is skipped (needs the package x, which is not installed)", ""),
         ("mcan", "", " Did you mean macn?"),
         ("x", "", ""),
     ],

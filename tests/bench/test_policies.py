@@ -1,4 +1,4 @@
-"""Learned policies in scenarios: played end to end, skipped without a checkpoint, refused with a broken one."""
+"""Learned policies in scenarios: played end to end, refused with a broken or missing checkpoint."""
 
 from collections.abc import Generator
 from pathlib import Path
@@ -18,6 +18,8 @@ from bench.reading.scenario import ScenarioError, read_scenario
 from learned import checkpoint
 from learned.policy import weighted
 from learned.vin import Vin
+
+SHIPPED = ", ".join(["none", *sorted(card.stem for card in checkpoint.SHIPPED.glob("*.json"))])
 
 UNTRAINED = [
     "astar",
@@ -103,12 +105,14 @@ def test_a_checkpoint_with_a_variable_starts_where_the_user_stands(
     monkeypatch.chdir(tmp_path.parent)
     monkeypatch.setenv("FOG_HERE", tmp_path.name)
     monkeypatch.setenv("FOG_VIN", "vin")
+    monkeypatch.setenv("FOG_MACN", "macn-grid")
     elsewhere = tmp_path / "elsewhere" / "s.yaml"
     scenario = read_scenario(PAGE.replace("AGENT", f'vin: {{checkpoint: "{written}"}}'), elsewhere)
     settings: Any = scenario.variants[0].agents[1].settings
     assert settings.checkpoint == str(saved)
-    scenario = read_scenario(PAGE.replace("AGENT", 'vin: {checkpoint: "${FOG_VIN}"}'), elsewhere)
-    assert scenario.variants[0].agents[1].skipped == "the checkpoint vin does not exist yet"
+    scenario = read_scenario(PAGE.replace("AGENT", 'macn: {checkpoint: "${FOG_MACN}"}'), elsewhere)
+    settings = scenario.variants[0].agents[1].settings
+    assert settings.checkpoint == "macn-grid"
 
 
 def test_weights_that_are_replaced_are_other_weights(saved: Path, tmp_path: Path) -> None:
@@ -122,17 +126,6 @@ def test_weights_that_are_replaced_are_other_weights(saved: Path, tmp_path: Path
     assert (agent_key(before), weighted(before.settings)) == (key, first)
     assert agent_key(after) != key
     assert torch.equal(weighted(after.settings).output.weight, weighted(other).output.weight)
-
-
-def test_no_checkpoint_yet_is_a_reason_to_skip(tmp_path: Path) -> None:
-    """A shipped name without a file skips the agent; the others play."""
-    assert told("macn: {checkpoint: nobody, read: 2}", tmp_path).endswith("Did you mean reads?")
-    scenario = read_scenario(PAGE.replace("AGENT", "macn: {checkpoint: nobody}"), tmp_path / "s.yaml")
-    first, second = scenario.variants[0].agents
-    assert (first.skipped, second.settings) == ("", None)
-    assert second.skipped == "the checkpoint nobody does not exist yet"
-    rows = facts(scenario, tmp_path / "results", 1)
-    assert set(rows["agent"]) == {"astar"}
 
 
 def test_maps_of_another_size_are_told_before_any_episode(tmp_path: Path) -> None:
@@ -187,8 +180,12 @@ def test_what_is_wrong_with_a_policy_is_told_at_its_place(
     )
     for name in ("./vin.safetensor", "vin.pt", ".", '""'):
         assert told(f"vin: {{checkpoint: {name}}}", tmp_path).endswith(
-            "expected none, the name of a shipped checkpoint, or a file that ends in .safetensors."
+            f"expected a file that ends in .safetensors, or one of {SHIPPED}."
         )
+    assert told("macn: {checkpoint: macn-gird}", tmp_path) == (
+        "6:24  agents[1].macn.checkpoint: got macn-gird; "
+        f"expected a file that ends in .safetensors, or one of {SHIPPED}. Did you mean macn-grid?"
+    )
     assert told("macn: {checkpoint: vin.safetensors}", tmp_path) == (
         "6:11  agents[1].macn: got {checkpoint: vin.safetensors}; expected a checkpoint of Macn (this is one of Vin)."
     )

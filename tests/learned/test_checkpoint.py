@@ -14,7 +14,7 @@ from learned.checkpoint import located, place_of, read_card, read_weights
 from learned.policy import weighted
 from learned.vin import Vin
 from worlds.files import sha256
-from worlds.mistake import Mistake, Unavailable
+from worlds.mistake import Mistake
 
 VIN = Vin(checkpoint="none", seed=3)
 
@@ -126,14 +126,17 @@ def test_cards_that_cannot_be_read(place: Path) -> None:
 
 
 def test_files_that_are_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file that is named must exist; a shipped name that does not yet is a reason to skip, with the nearest name."""
+    """A file or a shipped checkpoint that is named must exist; the nearest of the shipped ones is told."""
     with pytest.raises(Mistake) as caught:
         located("no.safetensors", tmp_path.joinpath)
     assert str(caught.value) == f"an existing file (looked for {tmp_path}/no.safetensors)"
     monkeypatch.setattr(checkpoint, "SHIPPED", tmp_path)
-    with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet$"):
-        place_of("macn-gird")
-    (tmp_path / "macn-grid.safetensors").touch()
-    with pytest.raises(Unavailable, match=r"^the checkpoint macn-gird does not exist yet; did you mean macn-grid\?$"):
-        place_of("macn-gird")
+    for shipped, near in ((), ""), (("macn-grid",), "macn-grid"):
+        for name in shipped:
+            (tmp_path / f"{name}.safetensors").touch()
+        with pytest.raises(Mistake) as caught:
+            located("macn-gird", tmp_path.joinpath)
+        assert str(caught.value) == f"a file that ends in .safetensors, or one of {', '.join(['none', *shipped])}"
+        assert caught.value.near == near
+    assert located("macn-grid", tmp_path.joinpath) == "macn-grid"
     assert place_of("macn-grid") == tmp_path / "macn-grid.safetensors"

@@ -15,7 +15,7 @@ from learned.macn import Macn
 from learned.network import Network
 from learned.policy import Policy, PolicyAgent, weighted
 from learned.vin import Vin
-from worlds.mistake import Mistake, Unavailable
+from worlds.mistake import Mistake
 from worlds.types import Move, Task
 
 Save = Callable[..., str]
@@ -127,12 +127,6 @@ def test_a_device_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     """CUDA is refused where PyTorch finds none."""
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     assert refusal(checkpoint="none", device="cuda") == "cpu, for PyTorch finds no CUDA device here"
-
-
-def test_a_checkpoint_that_does_not_exist_yet() -> None:
-    """A shipped name without a file is no mistake, but a reason to skip."""
-    with pytest.raises(Unavailable, match=r"^the checkpoint nobody does not exist yet"):
-        Macn(checkpoint="nobody")
 
 
 def test_words_are_those_of_the_weights(save: Save, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import learned
 import worlds
 from bench.reading.recipe import read_recipe
 from bench.reading.scenario import ScenarioError
+from learned.checkpoint import SHIPPED
 from learned.macn import Macn
 from learned.recipe import Teacher, Training
 from worlds.blobs import Blobs
@@ -20,6 +21,7 @@ NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or
 KEYS = (
     f"{', '.join(Training.model_fields)}, name, about, network, maps, sensor, rules, tasks, budget, variants, lessons"
 )
+CHECKPOINTS = ", ".join(["none", *sorted(card.stem for card in SHIPPED.glob("*.json"))])
 SETTINGS = f"one of {', '.join(Macn.model_fields)}"
 
 GOOD = """\
@@ -85,7 +87,7 @@ BROKEN = [
         [
             (
                 "3:30  network.macn.checkpoint: got mcan-grid; "
-                "expected one that is there; the checkpoint mcan-grid does not exist yet; did you mean macn-grid?."
+                f"expected a file that ends in .safetensors, or one of {CHECKPOINTS}. Did you mean macn-grid?"
             ),
         ],
     ),
