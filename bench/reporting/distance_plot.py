@@ -39,7 +39,7 @@ def against_distance(frames: Frames, looks: Looks, scenario: Scenario) -> Figure
         success.set_title(names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}")
         for look, bins in _lines([frames[name] for name in names], looks):
             _draw(success, memory, look, bins)
-        _distances(memory)
+        _scale(memory)
     _sizes(rows[1, 0])
     percent(rows[0, 0])
     rows[0, 0].set_ylabel("success [%]")
@@ -80,7 +80,7 @@ def _draw(success: Axes, memory: Axes, look: Look, bins: list[Bin]) -> None:
     memory.plot(distance, [each.peak_memory for each in bins], clip_on=False, **look._asdict())
 
 
-def _distances(axes: Axes) -> None:
+def _scale(axes: Axes) -> None:
     """A logarithmic axis if the distances are of several magnitudes."""
     distances = np.concatenate([line.get_xdata() for line in axes.lines])
     if distances.max() > WIDE * distances.min():

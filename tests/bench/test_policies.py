@@ -169,10 +169,8 @@ def test_a_variant_of_another_size_is_told(tmp_path: Path) -> None:
     assert told(f"{agent}\n{variants}", tmp_path).endswith("expected a network for maps of 7x7 (this one is for 6x6).")
 
 
-def test_what_is_wrong_with_a_policy_is_told_at_its_place(
-    saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Missing, mismatched, truncated and corrupted checkpoints, heads and devices: one line each."""
+def test_a_checkpoint_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
+    """No file of that name, no name that ships, or none at all: one line each."""
     assert told("vin", tmp_path) == "6:5  agents[1].vin.checkpoint: got nothing; expected text."
     assert told("vin: {checkpoint: no.safetensors}", tmp_path) == (
         "6:23  agents[1].vin.checkpoint: got no.safetensors; "
@@ -186,6 +184,12 @@ def test_what_is_wrong_with_a_policy_is_told_at_its_place(
         "6:24  agents[1].macn.checkpoint: got macn-gird; "
         f"expected a file that ends in .safetensors, or one of {SHIPPED}. Did you mean macn-grid?"
     )
+
+
+def test_what_is_wrong_with_a_policy_is_told_at_its_place(
+    saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Mismatched, truncated and corrupted checkpoints, heads and devices: one line each."""
     assert told("macn: {checkpoint: vin.safetensors}", tmp_path) == (
         "6:11  agents[1].macn: got {checkpoint: vin.safetensors}; expected a checkpoint of Macn (this is one of Vin)."
     )
