@@ -200,5 +200,6 @@ def main() -> None:
         typer.echo(str(mistake), err=True)
         sys.exit(WRONG)
     except OSError as error:
-        typer.echo(f"{error.filename}: got {error.strerror}; expected a place to read and write.", err=True)
+        place = error.filename or "the disk"
+        typer.echo(f"{place}: got {error.strerror}; expected a place to read and write.", err=True)
         sys.exit(WRONG)

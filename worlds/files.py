@@ -4,7 +4,7 @@ import fcntl
 import hashlib
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from worlds.mistake import Mistake
@@ -27,14 +27,19 @@ def put(path: Path, contents: bytes | memoryview) -> None:
     """Write a whole file or none: to a dot-name, to the disk, then renamed.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: it cannot be written; the error has its name.
     """
     draft = path.with_name(f".{path.name}")
-    with draft.open("wb") as file:
-        file.write(contents)
-        file.flush()
-        os.fsync(file.fileno())
-    draft.replace(path)
+    try:
+        with draft.open("wb") as file:
+            file.write(contents)
+            file.flush()
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            draft.unlink()
+        raise OSError(error.errno, error.strerror, str(path)) from None
 
 
 @contextmanager

@@ -1,5 +1,6 @@
-"""A folder is held by one process at a time."""
+"""A folder is held by one process at a time; a file is written whole or not at all."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -8,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import worlds
-from worlds.files import alone
+from worlds.files import alone, put
 from worlds.mistake import Mistake
 
 HOLD = """
@@ -50,3 +51,18 @@ def test_a_held_folder_is_let_go(tmp_path: Path) -> None:
         with pytest.raises(Mistake) as caught, alone(one, "run"), alone(other, "run"), alone(one, "look"):
             pass
         assert str(caught.value) == f"{one}: got a second look; expected the one in process {os.getpid()} to end first."
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The error, which the system gives no name, has the file's; no draft stays behind."""
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    put(tmp_path / "file", b"old")
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        put(tmp_path / "file", b"new")
+    assert caught.value.filename == str(tmp_path / "file")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert (tmp_path / "file").read_bytes() == b"old"
