@@ -18,6 +18,7 @@ from learned.policy import load
 from learned.recipe import Recipe, Training, Worlds
 from learned.rollout import Episode, Moment, Rollout, greedy, roll
 from worlds.grid import GridWorld
+from worlds.mistake import Mistake
 from worlds.streams import digest, stream
 from worlds.types import Array, MapFamily
 
@@ -36,12 +37,19 @@ class Student:
         """Learned from so far."""
 
     def learn(self) -> float:
-        """Play one more batch and learn from it; the loss before."""
+        """Play one more batch and learn from it; the loss before.
+
+        Raises:
+            Mistake: the weights would be numbers no longer; they stay as they were.
+        """
         training, done = self.recipe.training, self.batches / self.recipe.training.batches
         rollout = self._play(done)
         loss = imitation_loss(rollout)
         (loss + training.access_decay * access_weight(self.network)).backward()  # type: ignore[no-untyped-call]
-        torch.nn.utils.clip_grad_norm_(self.network.parameters(), training.clip)
+        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), training.clip)
+        if not norm.isfinite():
+            place = f"{self.recipe.name}, batch {self.batches + 1}"
+            raise Mistake(f"{place}: got a gradient of {norm.item()}; expected a smaller rate.")
         for group in self.optimiser.param_groups:
             group["lr"] = rate(training, done)
         self.optimiser.step()
@@ -152,6 +160,24 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
         wrong = int(rollout.wrong().sum()) / max(1, int(rollout.judged.sum()))
         scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
     return scores
+
+
+def rehearse(recipe: Recipe) -> None:
+    """Draw a world of each lesson and variant, so that what cannot be played is told before the first batch.
+
+    Raises:
+        Mistake: there is no such world, the network does not fit it, or its tasks are a list, of which those to learn
+            on, those to be tried on, and those that a scenario tests on are the same.
+    """
+    for place, worlds, family in recipe.places():
+        try:
+            listed = family.tasks(worlds.conditions)
+            recipe.network.frame(draw_episode(worlds, family, "training", 0, 0).world.task)
+        except Mistake as error:
+            raise Mistake(f"{recipe.name}: {place}: {error}.") from None
+        if listed is not None:
+            told = f"got a list of {listed} tasks; expected maps or tasks that are drawn afresh"
+            raise Mistake(f"{recipe.name}: {place}: {told}.")
 
 
 def draw_episode(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Episode:

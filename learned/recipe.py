@@ -1,6 +1,6 @@
 """What a training is told, as it stands in a recipe. Importing this imports no torch."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
@@ -103,9 +103,19 @@ class Recipe:
     """What the network is tried on while it learns, by the variants' names."""
     training: Training
 
+    def places(self) -> Iterator[tuple[str, Worlds, MapFamily]]:
+        """All worlds by what they are called: each lesson's, with its maps at first and at last, and each variant's."""
+        for number, (worlds, easy) in enumerate(self.lessons, 1):
+            yield f"lesson {number}, at first", worlds, easy
+            yield f"lesson {number}", worlds, worlds.family
+        for name, worlds in self.held_out.items():
+            yield name, worlds, worlds.family
+
     def words(self) -> str:
-        """All that fixes the weights, as text."""
-        begun = [Worlds(easy, worlds.conditions) for worlds, easy in self.lessons]
-        worlds = [*(lesson.worlds for lesson in self.lessons), *begun, *self.held_out.values()]
-        parts = (part for family, conditions in worlds for part in (family.words(), conditions.words()))
-        return "\n".join((self.network.words(), self.training.words(), *parts))
+        """All that fixes what a training leaves, as text."""
+        worlds = (
+            part
+            for place, (_, conditions), family in self.places()
+            for part in (place, family.words(), conditions.words())
+        )
+        return "\n".join((self.name, self.network.words(), self.training.words(), *worlds))

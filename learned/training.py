@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import torch
 
 from learned import checkpoint
-from learned.imitation import Student, validate
+from learned.imitation import Student, rehearse, validate
 from learned.recipe import Recipe
 from worlds.files import put
 from worlds.mistake import Mistake
@@ -52,8 +52,9 @@ class Course:
             origin: where the weights come from, for their card: commit, machine, versions.
 
         Raises:
-            Mistake: the folder holds the state of another training.
+            Mistake: a world of the recipe cannot be played, or the folder holds the state of another training.
         """
+        rehearse(recipe)
         folder.mkdir(parents=True, exist_ok=True)
         self.recipe, self.folder, self.origin = recipe, folder, origin
         self.student = Student(recipe)
@@ -122,25 +123,39 @@ class Course:
     def _save(self) -> None:
         state = {
             "recipe": digest(self.recipe.words()),
+            "threads": torch.get_num_threads(),
             **self.student.state(),
             **{name: getattr(self, name) for name in KEPT},
         }
+        lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
+        put(self.folder / "log.jsonl", lines.encode())  # first: what the state has, the log has too
         contents = io.BytesIO()
         torch.save(state, contents)
         put(self._state, contents.getvalue())
-        lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
-        put(self.folder / "log.jsonl", lines.encode())
 
     def _load(self) -> None:
         try:
             state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
-            recipe, kept = state["recipe"], {name: state[name] for name in KEPT}
+            self._recognise(state)
+            self.student.restore(state)
+            vars(self).update({name: state[name] for name in KEPT})
+        except Mistake:
+            raise
         except Exception:  # noqa: BLE001  whatever a broken file does to its reader
             raise Mistake(f"{self._state}: got a broken file; expected a training's state, or a new folder.") from None
-        if recipe != digest(self.recipe.words()):
-            raise Mistake(f"{self.folder}: got a training by another recipe; expected this one's, or a new folder.")
-        self.student.restore(state)
-        vars(self).update(kept)
+
+    def _recognise(self, state: Mapping[str, Any]) -> None:
+        """Hold a state against this course, which must come to the same end as the one that left it."""
+        threads, before = torch.get_num_threads(), state["threads"]
+        if state["recipe"] != digest(self.recipe.words()):
+            raise Mistake(
+                f"{self.folder}: got a training by another recipe; expected this one's, with its batches and seed, or a new folder."
+            )
+        if threads != before:
+            expected = f"{before} as before (OMP_NUM_THREADS={before}), or a new folder"
+            raise Mistake(f"{self.folder}: got {threads} threads for its training; expected {expected}.")
+        if state["best"] and not self.weights.exists():
+            raise Mistake(f"{self.weights}: got no such file; expected the best weights so far, or a new folder.")
 
 
 def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:

@@ -73,7 +73,10 @@ def test_a_folder_of_another_training_is_refused(train: Fogbench) -> None:
     """In one line, with exit code 2."""
     train("small.yaml", "--out", "mine", "--batches", "1")
     code, _, err = train("small.yaml", "--out", "mine")
-    assert (code, err) == (2, "mine: got a training by another recipe; expected this one's, or a new folder.\n")
+    assert (code, err) == (
+        2,
+        "mine: got a training by another recipe; expected this one's, with its batches and seed, or a new folder.\n",
+    )
 
 
 def test_mistakes_are_lines(train: Fogbench) -> None:

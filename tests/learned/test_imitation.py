@@ -2,20 +2,36 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import torch
 
+from bench.playing.loop import episode_world
+from bench.reading.scenario import read_scenario
 from learned.encoding import Inputs
-from learned.imitation import Explorer, Noisy, Student, access_weight, draw_episode, imitation_loss, part, pick, rate
+from learned.imitation import (
+    Explorer,
+    Noisy,
+    Student,
+    access_weight,
+    draw_episode,
+    imitation_loss,
+    part,
+    pick,
+    rate,
+    rehearse,
+)
 from learned.imitation import validate as tried
 from learned.macn import Macn
 from learned.policy import weighted
-from learned.recipe import Curriculum, Lesson, Recipe, Training, Validation, Worlds
+from learned.recipe import Curriculum, Lesson, Recipe, Teacher, Training, Validation, Worlds
 from learned.rollout import Episode, Moment, Rollout, roll
 from worlds.blobs import Blobs
+from worlds.mistake import Mistake
+from worlds.movingai import MovingAI
 from worlds.types import Array
 
 SMALL = Macn(checkpoint="none", size=(7, 7), features=32, hidden=32, memory_rows=4)
@@ -152,6 +168,107 @@ def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> No
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
     chances = [[episode.luck.random() for episode in episodes] for episodes in drawn]
     assert chances[0] == chances[2] != chances[1]
+
+
+def test_a_test_meets_other_maps_than_a_training() -> None:
+    """Of one family, none of the maps that scenarios test on is among those to learn on or to be tried on."""
+    text = "name: a\nmaps: {blobs: {size: 6, obstacles: [2, 6], obstacle_size: [1, 2]}}\nagents: [astar]\nepisodes: 20"
+    (variant,) = read_scenario(text + "\nbudget: {steps: 12}", Path("a.yaml")).variants
+    worlds = Worlds(variant.family, variant.conditions)
+    tested = {episode_world(variant, number).blocked.tobytes() for number in range(20)}
+    for purpose in ("training", "validation"):
+        for number in range(20):
+            assert draw_episode(worlds, worlds.family, purpose, 0, number).world.blocked.tobytes() not in tested
+
+
+def test_all_seeds_are_tried_on_the_same_maps(recipe: Callable[..., Recipe]) -> None:
+    """One network reaches the same on the held-out maps of two trainings."""
+    network = SMALL.network()
+    assert tried(recipe(seed=1), network) == tried(recipe(seed=2), network)
+
+
+def test_the_teacher_and_the_rate_give_way_over_the_batches(
+    recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A training of four batches decides and descends by what its recipe says of each."""
+    student = Student(recipe(batches=4, teacher=Teacher(share=(1, 0.2), until=0.5), rate=(1e-2, 1e-4)))
+    shares, rates = list[float](), list[float]()
+
+    class Spy(Explorer):
+        def __init__(self, luck: Any, episodes: int, share: float) -> None:
+            shares.append(share)
+            super().__init__(luck, episodes, share)
+
+    monkeypatch.setattr("learned.imitation.Explorer", Spy)
+    for _ in range(4):
+        student.learn()
+        rates.append(student.optimiser.param_groups[0]["lr"])
+    assert shares == pytest.approx([1, 0.6, 0.2, 0.2])
+    assert rates == pytest.approx([1e-2, 1e-2, 1e-2, 1e-3])
+
+
+@pytest.mark.parametrize(("name", "kind"), [("adam", torch.optim.Adam), ("rmsprop", torch.optim.RMSprop)])
+def test_the_optimiser_is_the_recipe_s(name: str, kind: type, recipe: Callable[..., Recipe]) -> None:
+    """The paper's is RMSProp, ours Adam."""
+    assert type(Student(recipe(optimiser=name)).optimiser) is kind
+
+
+def test_a_gradient_is_no_longer_than_allowed(recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch) -> None:
+    """All that the optimiser meets together has the norm of the recipe's clip, however steep the loss."""
+    student, norms = Student(recipe(clip=0.01)), list[float]()
+
+    def step() -> None:
+        gradients = [weight.grad.norm() for weight in student.network.parameters() if weight.grad is not None]
+        norms.append(float(torch.stack(gradients).norm()))
+
+    monkeypatch.setattr(student.optimiser, "step", step)
+    student.learn()
+    assert norms == pytest.approx([0.01], rel=1e-3)
+
+
+def test_weights_that_grow_beyond_all_numbers_are_told(recipe: Callable[..., Recipe]) -> None:
+    """Before they are changed once more: what was learned until then is left."""
+    student = Student(recipe(rate=(1e30, 1e30)))
+    student.learn()
+    before = [weight.clone() for weight in student.network.parameters()]
+    with pytest.raises(Mistake) as caught:
+        student.learn()
+    assert str(caught.value) == "small, batch 2: got a gradient of nan; expected a smaller rate."
+    assert all(torch.equal(a, b) for a, b in zip(before, student.network.parameters(), strict=True))
+
+
+def test_worlds_that_cannot_be_played_are_told_at_once(
+    recipe: Callable[..., Recipe], conditions: Callable[..., Any]
+) -> None:
+    """Of the lessons, at first and at last, and of every variant: no task is found, or the network does not fit."""
+    made = recipe()
+    near, far = made.lessons[0].worlds, Worlds(MAPS, conditions(distance=(50, 60)))
+    rehearse(made)
+    none = "Blobs: no task with an optimum of 50 to 60 cells was found on 1000 maps."
+    for changed, place in (
+        (replace(made, held_out={"near": near, "far": far}), "far"),
+        (replace(made, lessons=(Lesson(near, MAPS), Lesson(far, MAPS))), "lesson 2, at first"),
+    ):
+        with pytest.raises(Mistake) as caught:
+            rehearse(changed)
+        assert str(caught.value) == f"small: {place}: {none}"
+    whole = SMALL.model_copy(update={"reading": "map", "size": (6, 6)})
+    large = Worlds(Blobs(size=9, obstacles=(0, 1), obstacle_size=(1, 1)), near.conditions)
+    with pytest.raises(Mistake) as caught:
+        rehearse(replace(made, network=whole, held_out={"large": large}))
+    assert str(caught.value) == "small: large: got a map of 9x9; expected 6x6, the size."
+
+
+def test_listed_tasks_are_not_learned_from(recipe: Callable[..., Recipe], tmp_path: Path) -> None:
+    """A scenario tests on all of them; of files, a family that draws its tasks can be learned on."""
+    (tmp_path / "x.map").write_text("type octile\nheight 1\nwidth 9\nmap\n.........\n")
+    (tmp_path / "x.map.scen").write_text("version 1\n0\tx.map\t9\t1\t0\t0\t8\t0\t8\n")
+    made = recipe()
+    listed = Worlds(MovingAI(map=tmp_path / "x.map"), made.lessons[0].worlds.conditions)
+    with pytest.raises(Mistake) as caught:
+        rehearse(replace(made, held_out={"city": listed}))
+    expected = "got a list of 1 tasks; expected maps or tasks that are drawn afresh."
+    assert str(caught.value) == f"small: city: {expected}"
 
 
 def test_a_curriculum_is_played_from_its_beginning(

@@ -1,5 +1,6 @@
 """Whole trainings: they repeat, they go on after a kill as if nothing had happened, and they keep the best weights."""
 
+import errno
 import json
 import os
 import subprocess
@@ -90,6 +91,32 @@ def test_a_stopped_training_goes_on_between_trials(tmp_path: Path, monkeypatch: 
     assert ended(Course(recipe(), tmp_path / "stopped", {})) == whole
 
 
+def test_a_trial_tells_the_mean_loss_since_the_last(tmp_path: Path) -> None:
+    """Of every batch in between, none twice."""
+    course = Course(recipe(), tmp_path, {})
+    losses = [news.loss for news in course.go_on()]
+    between = [losses[:5], losses[5:10], losses[10:]]
+    assert [trial["loss"] for trial in course.trials] == pytest.approx([sum(some) / len(some) for some in between])
+
+
+def test_a_state_that_cannot_be_written_leaves_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The training goes on from there, once there is room, to the end that it would have had."""
+    whole = ended(Course(recipe(), tmp_path / "whole", {}))
+    course = Course(recipe(), tmp_path / "full", {})
+    next(news for news in course.go_on() if news.trial)
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    course = Course(recipe(), tmp_path / "full", {})
+    with monkeypatch.context() as patch:
+        patch.setattr("os.fsync", full)
+        with pytest.raises(OSError, match="No space left"):
+            ended(course)
+    assert left_at(tmp_path / "full") == 5
+    assert ended(Course(recipe(), tmp_path / "full", {})) == whole
+
+
 def left_at(folder: Path) -> int:
     """Batches of the state in a folder."""
     batches: int = torch.load(folder / "state.pt", weights_only=True)["batches"]
@@ -111,7 +138,7 @@ def test_a_killed_training_ends_with_the_same_weights(tmp_path: Path) -> None:
     for folder in folders:
         folder.mkdir()
     undisturbed, killed = map(start, folders)
-    while not (folders[1] / "out" / "log.jsonl").exists():
+    while not (folders[1] / "out" / "state.pt").exists():
         assert killed.poll() is None
         time.sleep(0.002)
     killed.kill()
@@ -156,6 +183,8 @@ def test_the_best_weights_are_kept_with_their_card(tmp_path: Path) -> None:
     card = json.loads((tmp_path / "tiny.json").read_text())
     told = card["training"]
     assert (told["batches"], told["of"], told["seed"], told["commit"]) == (batches, 12, 3, "abc")
+    assert (told["threads"], told["device"]) == (torch.get_num_threads(), "cpu")
+    assert told["minutes"] == round(course.trials[[5, 10, 12].index(batches)]["seconds"] / 60, 1)
     assert told["recipe"] == TEXT.replace("BATCHES", "12")
     assert card["settings"]["size"] == [5, 5]
     policy = policy_of(tmp_path)
@@ -182,12 +211,69 @@ def test_a_training_can_start_from_a_checkpoint(tmp_path: Path) -> None:
         assert torch.equal(course.student.network.state_dict()[name], tensor)
 
 
-def test_another_recipe_s_folder_is_refused(tmp_path: Path) -> None:
+OTHERS = [
+    {"name": "other"},
+    {"network": "{macn: {size: [5, 5], iterations: 4, features: 16, hidden: 16, memory_rows: 4}}"},
+    {"maps": "{blobs: {size: 6, obstacles: [1, 6], obstacle_size: [1, 2]}}"},
+    {"sensor": "{radius: 1}"},
+    {"rules": "{collision: fails}"},
+    {"budget": "{steps: 9}"},
+    {"curriculum": "{easy: {obstacles: [0, 2]}, until: 0.5}"},
+    {"batches": 2},
+    {"noise": 0},
+    {"validation": "{episodes: 9, every: 5}"},
+    {"seed": 4},
+]
+"""What makes another recipe of the tiny one."""
+
+
+@pytest.mark.parametrize("changes", OTHERS, ids=lambda changes: next(iter(changes)))
+def test_another_recipe_s_folder_is_refused(changes: dict[str, Any], tmp_path: Path) -> None:
     """Rather than go on with other settings than those it was begun with."""
-    ended(Course(recipe(batches=1), tmp_path, {}))
+    for _ in Course(recipe(batches=1), tmp_path, {}).go_on():
+        pass
     with pytest.raises(Mistake) as caught:
-        Course(recipe(batches=2), tmp_path, {})
-    assert str(caught.value) == f"{tmp_path}: got a training by another recipe; expected this one's, or a new folder."
+        Course(recipe(**{"batches": 1, **changes}), tmp_path, {})
+    assert (
+        str(caught.value)
+        == f"{tmp_path}: got a training by another recipe; expected this one's, with its batches and seed, or a new folder."
+    )
+
+
+def test_another_variant_s_folder_is_refused(tmp_path: Path) -> None:
+    """Also where only its name is another: the log has it."""
+    text = TEXT.replace("BATCHES", "1")
+    for _ in Course(read_recipe(text + "variants: {a: {}}\n", Path("tiny.yaml")), tmp_path, {}).go_on():
+        pass
+    for other in ("{b: {}}", "{a: {budget: {steps: 9}}}", "{a: {}, b: {}}"):
+        with pytest.raises(Mistake, match="got a training by another recipe"):
+            Course(read_recipe(f"{text}variants: {other}\n", Path("tiny.yaml")), tmp_path, {})
+
+
+def test_other_threads_are_refused(tmp_path: Path) -> None:
+    """They would lead to other weights."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    threads = torch.get_num_threads()
+    torch.set_num_threads(threads + 1)
+    try:
+        with pytest.raises(Mistake) as caught:
+            Course(recipe(batches=1), tmp_path, {})
+    finally:
+        torch.set_num_threads(threads)
+    assert str(caught.value) == (
+        f"{tmp_path}: got {threads + 1} threads for its training; "
+        f"expected {threads} as before (OMP_NUM_THREADS={threads}), or a new folder."
+    )
+
+
+def test_best_weights_that_are_gone_are_missed(tmp_path: Path) -> None:
+    """Rather than that the training says where they were."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    (tmp_path / "tiny.safetensors").unlink()
+    with pytest.raises(Mistake) as caught:
+        Course(recipe(batches=1), tmp_path, {})
+    expected = "expected the best weights so far, or a new folder."
+    assert str(caught.value) == f"{tmp_path / 'tiny.safetensors'}: got no such file; {expected}"
 
 
 SHIPPED = sorted(Path(learned.__file__).parent.glob("recipes/*.yaml"))
@@ -205,6 +291,16 @@ def test_a_shipped_recipe_trains(path: Path, tmp_path: Path) -> None:
     after = student.network.state_dict().values()
     changed = [not torch.equal(a, b) for a, b in zip(before, after, strict=True)]
     assert sum(changed) >= len(changed) - 1
+
+
+def test_a_state_of_another_network_is_refused(tmp_path: Path) -> None:
+    """As it is after a layer was changed."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    state = torch.load(tmp_path / "state.pt", weights_only=True)
+    state["network"].popitem()
+    torch.save(state, tmp_path / "state.pt")
+    with pytest.raises(Mistake, match="got a broken file; expected a training's state, or a new folder"):
+        Course(recipe(batches=1), tmp_path, {})
 
 
 @pytest.mark.parametrize("broken", [b"", b"no zip", None])
