@@ -148,9 +148,8 @@ class Course:
         """Hold a state against this course, which must come to the same end as the one that left it."""
         threads, before = torch.get_num_threads(), state["threads"]
         if state["recipe"] != digest(self.recipe.words()):
-            raise Mistake(
-                f"{self.folder}: got a training by another recipe; expected this one's, with its batches and seed, or a new folder."
-            )
+            expected = "this one's, its batches and seed included, or a new folder"
+            raise Mistake(f"{self.folder}: got a training by another recipe; expected {expected}.")
         if threads != before:
             expected = f"{before} as before (OMP_NUM_THREADS={before}), or a new folder"
             raise Mistake(f"{self.folder}: got {threads} threads for its training; expected {expected}.")

@@ -73,10 +73,8 @@ def test_a_folder_of_another_training_is_refused(train: Fogbench) -> None:
     """In one line, with exit code 2."""
     train("small.yaml", "--out", "mine", "--batches", "1")
     code, _, err = train("small.yaml", "--out", "mine")
-    assert (code, err) == (
-        2,
-        "mine: got a training by another recipe; expected this one's, with its batches and seed, or a new folder.\n",
-    )
+    expected = "this one's, its batches and seed included, or a new folder"
+    assert (code, err) == (2, f"mine: got a training by another recipe; expected {expected}.\n")
 
 
 def test_mistakes_are_lines(train: Fogbench) -> None:

@@ -234,10 +234,8 @@ def test_another_recipe_s_folder_is_refused(changes: dict[str, Any], tmp_path: P
         pass
     with pytest.raises(Mistake) as caught:
         Course(recipe(**{"batches": 1, **changes}), tmp_path, {})
-    assert (
-        str(caught.value)
-        == f"{tmp_path}: got a training by another recipe; expected this one's, with its batches and seed, or a new folder."
-    )
+    expected = "this one's, its batches and seed included, or a new folder"
+    assert str(caught.value) == f"{tmp_path}: got a training by another recipe; expected {expected}."
 
 
 def test_another_variant_s_folder_is_refused(tmp_path: Path) -> None:
