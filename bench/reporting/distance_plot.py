@@ -33,17 +33,24 @@ def against_distance(frames: Frames, looks: Looks, scenario: Scenario) -> Figure
     Variants of one map family share their panels if their goals are ever farther away: no distance is in two of them.
     """
     joined = _joined(frames, scenario)
-    figure = Figure(figsize=(1.9 + 2.4 * len(joined), 5.2), layout="constrained")
-    rows = figure.subplots(2, len(joined), sharex="col", sharey="row", squeeze=False)  # [2, panels]
-    for success, memory, names in zip(*rows, joined, strict=True):
+    columns = min(3, len(joined))
+    rows = -(-len(joined) // columns)
+    figure = Figure(figsize=(1.9 + 2.4 * columns, 0.4 + 4.4 * rows), layout="constrained")
+    grid = figure.subplots(2 * rows, columns, sharey="row", squeeze=False)  # [2 rows, columns] success over memory
+    panels = list(zip(grid[::2].flat, grid[1::2].flat, strict=True))
+    for success, memory in panels[len(joined) :]:
+        success.remove()
+        memory.remove()
+    for (success, memory), names in zip(panels, joined, strict=False):
         success.set_title(names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}")
         for look, bins in _lines([frames[name] for name in names], looks):
             _draw(success, memory, look, bins)
-        _scale(memory)
-    _sizes(rows[1, 0])
-    percent(rows[0, 0])
-    rows[0, 0].set_ylabel("success [%]")
-    rows[1, 0].set_ylabel("peak memory")
+        _scale(success, memory)
+    for success, memory in panels[::columns]:
+        percent(success)
+        _sizes(memory)
+        success.set_ylabel("success [%]")
+        memory.set_ylabel("peak memory")
     figure.supxlabel(_unit(frames), fontsize="medium")
     legend(figure, looks, lines=True)
     return figure
@@ -76,15 +83,19 @@ def _draw(success: Axes, memory: Axes, look: Look, bins: list[Bin]) -> None:
     shares = np.array([each.success.times(100)[:3] for each in bins])  # [bins, 3] value, low, high
     distance = [each.distance for each in bins]
     success.plot(distance, shares[:, 0], **look._asdict())
+    if len(bins) == 1:  # a band would have no width
+        success.vlines(distance, shares[:, 1], shares[:, 2], color=look.color, linewidth=0.8)
     success.fill_between(distance, shares[:, 1], shares[:, 2], color=look.color, alpha=0.12, linewidth=0)
     memory.plot(distance, [each.peak_memory for each in bins], clip_on=False, **look._asdict())
 
 
-def _scale(axes: Axes) -> None:
-    """A logarithmic axis if the distances are of several magnitudes."""
-    distances = np.concatenate([line.get_xdata() for line in axes.lines])
+def _scale(success: Axes, memory: Axes) -> None:
+    """One axis of distances for both, logarithmic if they are of several magnitudes."""
+    distances = np.concatenate([line.get_xdata() for line in memory.lines])
+    success.sharex(memory)
+    success.tick_params(labelbottom=False)
     if distances.max() > WIDE * distances.min():
-        axes.set_xscale("log")
+        memory.set_xscale("log")
 
 
 def _sizes(axes: Axes) -> None:

@@ -60,7 +60,7 @@ def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Fig
     """A panel for each variant, at most three in a row."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
-    figure = Figure(figsize=(1.9 + 2.4 * columns, 1.0 + 2.2 * rows), layout="constrained")
+    figure = Figure(figsize=(1.9 + 2.4 * columns, 0.6 + 2.2 * rows), layout="constrained")
     panels = list(figure.subplots(rows, columns, sharey=True, squeeze=False).flat)
     for axes in panels[len(names) :]:
         axes.remove()
@@ -73,13 +73,18 @@ def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Fig
 
 
 def legend(figure: Figure, looks: Looks, *, lines: bool) -> None:
-    """One legend over the figure; without `lines` it shows the marks alone."""
+    """One legend over the figure, in as many columns as fit; without `lines` it shows the marks alone."""
     handles = [
         Line2D([], [], color=look.color, marker=look.marker, linestyle=look.linestyle if lines else "", label=agent)
         for agent, look in looks.items()
     ]
-    columns = min(len(handles), max(2, int(figure.get_figwidth() / 1.4)))
-    figure.legend(handles=handles, loc="outside upper center", ncols=columns, handlelength=3 if lines else 1)
+    for columns in range(len(handles), 0, -1):
+        length = 3 if lines else 1
+        drawn = figure.legend(handles=handles, loc="outside upper center", ncols=columns, handlelength=length)
+        if columns == 1 or drawn.get_window_extent().width <= figure.bbox.width:
+            break
+        drawn.remove()
+    figure.set_figheight(figure.get_figheight() + drawn.get_window_extent().height / figure.dpi)
 
 
 def percent(axes: Axes) -> None:

@@ -15,8 +15,11 @@ from matplotlib.figure import Figure
 from bench.reading.scenario import Scenario
 from bench.reporting.curves import Steps, success_by_seconds, success_by_steps
 from bench.reporting.distance_plot import Frames, against_distance
-from bench.reporting.panels import STYLE, Looks, legend, looks_of, panels_of, percent
+from bench.reporting.panels import MARKS, STYLE, Looks, legend, looks_of, panels_of, percent
 from worlds.types import Array
+
+FAR = 1.5
+"""So many times the median ratio, the axis of ratios ends."""
 
 
 def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: Path) -> list[str]:
@@ -61,13 +64,19 @@ def success(table: pd.DataFrame, looks: Looks) -> Figure:
 
 
 def path_ratio(table: pd.DataFrame, looks: Looks) -> Figure:
-    """Path ratio to the full-map optimum and to A* on the map seen so far, with intervals, by variant."""
-    figure, panels = _dots(table, ("path_ratio", "reference_ratio"), looks)
-    for axes, other in zip(panels, ("optimum", "A* on the map seen"), strict=True):
+    """Path ratio to the full-map optimum and to A* on the map seen so far, with intervals, by variant.
+
+    Who is far above most (a random walk) is off the axis, with an arrow in its place.
+    """
+    metrics = {"path_ratio": "optimum", "reference_ratio": "A* on the map seen"}
+    figure, panels = _dots(table, tuple(metrics), looks)
+    for axes, (metric, other) in zip(panels, metrics.items(), strict=True):
         axes.axhline(1, color="#888888", linewidth=0.8, zorder=1)
-        low, high = axes.get_ylim()
-        axes.set_ylim(min(low, 0.99), max(high, 1.05))  # a narrower axis would make much of nothing
-        axes.set_ylabel(f"length / {other}")
+        shown = table.loc[table["metric"] == metric, ["low", "value", "high"]].fillna(1)
+        top = max(1.05, min(1.02 * shown["high"].max(), FAR * shown["value"].median()))
+        axes.set_ylim(min(0.98, 0.98 * shown["low"].min()), top)  # a narrower axis would make much of nothing
+        axes.set_ylabel(f"length / {other},\nown successes")
+        _point_beyond(axes)
     return figure
 
 
@@ -95,7 +104,7 @@ def _dots(table: pd.DataFrame, metrics: Sequence[str], looks: Looks) -> tuple[Fi
     """Estimates with intervals: a panel for each metric, variants side by side, agents next to each other in each."""
     variants = list(dict.fromkeys(table["variant"]))
     width = float(np.clip(1.2 + 0.2 * len(variants) * (len(looks) + 1), 4.5, 14))
-    figure = Figure(figsize=(width, 0.8 + 2.2 * len(metrics)), layout="constrained")
+    figure = Figure(figsize=(width, 0.4 + 2.2 * len(metrics)), layout="constrained")
     panels = list(figure.subplots(len(metrics), 1, sharex=True, squeeze=False).flat)
     for axes, metric in zip(panels, metrics, strict=True):
         for k, (agent, look) in enumerate(looks.items()):
@@ -106,6 +115,16 @@ def _dots(table: pd.DataFrame, metrics: Sequence[str], looks: Looks) -> tuple[Fi
         _side_by_side(axes, variants)
     legend(figure, looks, lines=False)
     return figure, panels
+
+
+def _point_beyond(axes: Axes) -> None:
+    """An arrow at the upper end of the axis for each mark above it."""
+    top = axes.get_ylim()[1]
+    for line in (line for line in axes.lines if line.get_marker() in MARKS):
+        look = {"arrowstyle": "->", "color": line.get_color()}
+        for x, value in zip(*line.get_data(), strict=True):
+            if value > top:
+                axes.annotate("", (x, top), (0, -12), textcoords="offset points", arrowprops=look)
 
 
 def _side_by_side(axes: Axes, variants: Sequence[str]) -> None:

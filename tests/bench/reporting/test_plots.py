@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from bench.reading.scenario import Entry, Scenario
-from bench.reporting.panels import looks_of
+from bench.reporting.panels import Look, looks_of, panels_of
 from bench.reporting.plots import draw, draw_figures
 from bench.reporting.report import summary
 
@@ -144,3 +144,33 @@ def test_an_axis_of_ratios_makes_nothing_of_noise(frame: pd.DataFrame, make: Mak
     assert low <= 0.99
     assert high >= 1.05
     assert axes.yaxis.get_major_formatter().get_useOffset() is False
+
+
+def test_a_legend_is_inside_its_figure() -> None:
+    """However many agents there are and however long their labels."""
+    for count, length in ((2, 5), (17, 12), (9, 40)):
+        looks = {f"{k}".rjust(length, "x"): Look("#000000", "o", "-") for k in range(count)}
+        figure, _ = panels_of(["a"], looks, "x", "y")
+        figure.draw_without_rendering()
+        (drawn,) = figure.legends
+        assert drawn.get_window_extent().x0 >= 0
+        assert drawn.get_window_extent().x1 <= figure.bbox.x1
+        assert figure.axes[0].get_position().height * figure.get_figheight() > 1  # inch
+
+
+def test_an_arrow_stands_for_what_is_far_above(frame: pd.DataFrame, make: Make) -> None:
+    """A mark many times above the median does not flatten all others; those near it have no arrow."""
+    frame["outcome"] = "REACHED"
+    frame["length"] = frame["shortest"] * np.where(frame["agent"] == "memoryless", 9, 1.01)
+    most = frame[(frame["agent"] == "astar") | (frame["variant"] == "short")]
+    axes = figures(most, make())["path_ratio.png"].axes[0]
+    assert axes.get_ylim()[1] < 2
+    (arrow,) = axes.texts
+    assert arrow.xy[1] == axes.get_ylim()[1]
+
+
+def test_one_bin_has_its_interval(frame: pd.DataFrame, make: Make) -> None:
+    """Six successes of six are shown with Wilson's interval, though a band over one distance would have no width."""
+    axes = figures(frame, make())["by_distance.png"].axes[0]
+    ((_, low), (_, high)) = axes.collections[0].get_segments()[0]
+    assert (low, high) == pytest.approx((61, 100), abs=0.1)
