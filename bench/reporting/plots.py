@@ -5,6 +5,7 @@ Figures are made without pyplot, so nothing global is touched and no window is e
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -120,9 +121,9 @@ def _dots(table: pd.DataFrame, metrics: Sequence[str], looks: Looks) -> tuple[Fi
 def _point_beyond(axes: Axes) -> None:
     """An arrow at the upper end of the axis for each mark above it."""
     top = axes.get_ylim()[1]
-    for line in (line for line in axes.lines if line.get_marker() in MARKS):
+    for line in (line for line in axes.lines if str(line.get_marker()) in MARKS):
         look = {"arrowstyle": "->", "color": line.get_color()}
-        for x, value in zip(*line.get_data(), strict=True):
+        for x, value in np.column_stack(cast(Any, line.get_data())).astype(np.float64).tolist():
             if value > top:
                 axes.annotate("", (x, top), (0, -12), textcoords="offset points", arrowprops=look)
 
