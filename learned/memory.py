@@ -34,6 +34,10 @@ class Remembering(Policy):
     links: bool = True
     """Whether a DNC keeps temporal links."""
 
+    def idle(self) -> frozenset[str]:
+        """Those of a DNC's memory, without one."""
+        return frozenset() if self.memory == "dnc" else frozenset({"memory_rows", "word", "reads", "writes", "links"})
+
     def remember(self) -> "DNC | LSTM | FeedForward":
         """A memory with weights drawn anew."""
         if self.memory == "lstm":

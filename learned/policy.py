@@ -41,7 +41,7 @@ class Policy(Settings):
 
     kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
 
-    checkpoint: str
+    checkpoint: Annotated[str, Field(examples=[NONE, "macn-grid", "./mine.safetensors"])]
     """The name of a shipped checkpoint, a file that ends in `.safetensors`, or `none` for fresh weights."""
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     """Of fresh weights."""
@@ -84,6 +84,10 @@ class Policy(Settings):
         """Whether it can play on maps of some extent; of maps that differ that is not known yet."""
         return self.reading == "window" or extent in (None, self.size)
 
+    def idle(self) -> frozenset[str]:
+        """The settings that mean nothing together with the others; giving one of them is a mistake."""
+        return frozenset()
+
     def parameter_bytes(self) -> int:
         """The bytes of all weights."""
         return sum(parameter.nbytes for parameter in weighted(self).parameters())
@@ -117,6 +121,8 @@ class Policy(Settings):
                 raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
             settings.hold_to(card, block)
             settings._weights = card.sha256  # noqa: SLF001  its own
+        if isinstance(block, dict) and (odd := sorted(settings.idle() & block.keys())):
+            raise Mistake(f"no {odd[0]}, which means nothing to such a network")
         extent: Any = (info.context or {}).get("extent")
         if not settings.fits(extent):
             raise Mistake(f"a network for maps of {_by(extent)} (this one is for {_by(settings.size)})")

@@ -111,7 +111,8 @@ def _words(schema: Schema) -> str:
         return _row(schema["prefixItems"])
     if str(schema.get("format", "")).endswith("path"):
         return "a path"
-    return _noun(schema, 0) + _bounds(schema)
+    examples = f" like {', '.join(map(str, schema['examples']))}" if "examples" in schema else ""
+    return _noun(schema, 0) + _bounds(schema) + examples
 
 
 def _noun(schema: Schema, form: int) -> str:

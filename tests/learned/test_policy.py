@@ -221,3 +221,12 @@ def test_every_task_has_its_own_agent(draw: Callable[..., Any]) -> None:
     one, two = (POLICIES[0].start(task, np.random.default_rng()) for _ in range(2))
     assert one.network is two.network
     assert one.state is not two.state
+
+
+def test_settings_that_mean_nothing_are_refused(save: Callable[[Policy, str], str]) -> None:
+    """Rather than that an LSTM seems to need no more rows; on its card they may stand."""
+    file = save(Macn(checkpoint="none", memory="lstm"), "lstm")
+    for name, value in (("memory_rows", 64), ("word", 8), ("reads", 4), ("writes", 1), ("links", True)):
+        assert refusal(checkpoint=file, **{name: value}) == f"no {name}, which means nothing to such a network"
+        assert refusal(checkpoint="none", memory="feedforward", **{name: value}).startswith(f"no {name},")
+    assert Macn(checkpoint=file).memory == "lstm"
