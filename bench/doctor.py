@@ -3,6 +3,7 @@
 import os
 import platform
 import sys
+import tomllib
 from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
@@ -23,6 +24,9 @@ from planners.astar import search
 from worlds.kernel import kept
 
 PROJECT = "fogbench"
+
+PYPROJECT = Path(__file__).parents[1] / "pyproject.toml"
+"""Of a checkout; an installed project has none."""
 
 REHEARSAL = f"""
 name: rehearsal
@@ -70,7 +74,9 @@ def _requirements() -> list[str]:
     try:
         return requires(PROJECT) or []
     except PackageNotFoundError:  # run from a checkout that is not installed
-        return []
+        project = tomllib.loads(PYPROJECT.read_text("utf-8"))["project"]
+        extras = project["optional-dependencies"].items()
+        return [*project["dependencies"], *(f'{need}; extra == "{extra}"' for extra, all_ in extras for need in all_)]
 
 
 def _version(name: str) -> str:

@@ -4,12 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 import bench
-from bench.doctor import examine
+from bench.doctor import _requirements, examine
 from learned import LEARNED
 from planners import PLANNERS
 
@@ -74,7 +76,7 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
 ) -> None:
     """The project is installed from its checkout; without extras, or a place to write, all else is still examined."""
     monkeypatch.setenv("COLUMNS", "160")
-    monkeypatch.setattr("bench.doctor._requirements", lambda: ["fog-lamp", 'fog-horn; extra == "noise"'])
+    monkeypatch.setattr("bench.doctor.requires", lambda _: ["fog-lamp", 'fog-horn; extra == "noise"'])
     for package in ("torch", "ompl"):
         monkeypatch.setitem(sys.modules, package, None)
     needy = [name for name in sys.modules if name == "planners.rrt_star" or name.startswith("learned.")]
@@ -87,6 +89,19 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
     assert ["fog-horn", 'missing: pip install ".[noise]"', "the extra noise"] in told
     assert ["kernels", "compiled by each process for itself: no place can be written"] in told
     assert not [row for row in told if row[:1] == ["value iteration, 128 maps of 16x16, 20 times"]]
+
+
+def test_a_checkout_knows_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the project itself is not installed, its own file says what an installed one does."""
+
+    def absent(name: str) -> list[str]:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr("bench.doctor.requires", absent)
+    monkeypatch.setattr("bench.doctor.PYPROJECT", Path(__file__).parents[2] / "pyproject.toml")
+    needs = {need.name: need.marker for need in map(Requirement, _requirements())}
+    assert needs["numpy"] is None
+    assert str(needs["torch"]) == 'extra == "learned"'
 
 
 def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
