@@ -47,8 +47,11 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     code, out, _ = train("small.yaml")
     folder = Path("results/training/small")
     assert code == 0
-    assert out.count("% success") == 4
-    assert f"The best weights are in {folder}/small.safetensors" in out
+    assert out.count("% success,") == 4
+    best = json.loads((folder / "small.json").read_text())["training"]["variants"]
+    mean = (best["few"]["success"] + best["many"]["success"]) / 2
+    assert f"The best weights ({mean:.1f} % success over all variants) are in {folder}/small.safetensors" in out
+    assert "goes on" not in out
     assert {file.name for file in folder.iterdir()} == {
         *(".lock", "small.safetensors", "small.json", "state.pt", "log.jsonl", "learning.png"),
     }
@@ -57,7 +60,9 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     assert f"batch 4: loss {log[1]['loss']:.3f}; few: {log[1]['variants']['few']['success']:.1f} % success" in out
     with Image.open(folder / "learning.png") as picture:
         assert min(picture.size) > 100
-    assert "% success" not in train("small.yaml")[1]
+    again = train("small.yaml")[1]
+    assert "It goes on from batch 4." in again
+    assert "few:" not in again
 
 
 def test_the_command_line_comes_before_the_recipe(train: Fogbench) -> None:
