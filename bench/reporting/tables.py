@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -24,6 +25,10 @@ SCALES = {
 
 WIDTH = 120
 """Columns of text that a table may take even where the terminal has fewer, or a pipe pretends to have 80."""
+
+
+LEAST, MOST = 20, 10_000
+"""Columns of text below which the last column of a table does not give way, and more than any table needs."""
 
 
 class Lines(NamedTuple):
@@ -73,8 +78,10 @@ def markdown(lines: Lines) -> str:
 
 def print_table(title: str, lines: Lines, console: Console) -> None:
     """Print a table, as wide as it needs to be; blanks at the ends of its lines would wrap in a narrow terminal."""
-    options = console.options.update(width=max(console.width, WIDTH))
-    for line in console.render_lines(terminal(title, lines), options, pad=False):
+    table = terminal(title, lines)
+    least = Measurement.get(console, console.options.update(width=MOST), table).minimum
+    options = console.options.update(width=max(console.width, WIDTH, least))
+    for line in console.render_lines(table, options, pad=False):
         text = Text.assemble(*((segment.text, segment.style or "") for segment in line))
         text.rstrip()
         console.print(text, soft_wrap=True)
@@ -83,12 +90,14 @@ def print_table(title: str, lines: Lines, console: Console) -> None:
 def terminal(title: str, lines: Lines) -> RichTable:
     """The table for a terminal.
 
-    A gap stands where the first column changes. If space is short, the second and the last column give way.
+    A gap stands where the first column changes. If space is short, the last column gives way.
     """
     look: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "box": SIMPLE_HEAD, "show_edge": False}
     table = RichTable(title=f"\n{title}", padding=0, **look)
     for k, text in enumerate(lines.headings):
-        table.add_column(Text(text.replace(" ", "\n")), no_wrap=k not in {1, len(lines.headings) - 1}, overflow="fold")
+        widest, last = max((len(row[k]) for row in lines.rows), default=0), k == len(lines.headings) - 1
+        least = min(widest, LEAST) if last else widest
+        table.add_column(Text(text.replace(" ", "\n")), no_wrap=not last, overflow="fold", min_width=least)
     for row, after in zip(lines.rows, [*lines.rows[1:], None], strict=True):
         table.add_row(*map(Text, row), end_section=after is not None and after[0] != row[0])
     return table

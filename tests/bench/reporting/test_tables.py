@@ -79,3 +79,15 @@ def test_a_metric_may_be_made_anywhere() -> None:
     """A metric is a name, how it is written, and a function of the episodes it is over."""
     metric = Metric("n", "n", "", "", 0, ALL, "Episodes.", lambda cell: Estimate(float(len(cell))))
     assert written(Estimate(3.0), metric) == "3"
+
+
+def test_only_the_last_column_is_broken() -> None:
+    """A table whose columns need more than there is takes more; no name is cut, and no number lost."""
+    console = Console(width=80, file=StringIO())
+    row = ["64x64 dense", "MACN (feed-forward)", *(f"{k}" * 30 for k in range(6)), "the last word of it"]
+    print_table("T", Lines([f"{k}" for k in range(9)], [row]), console)
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert all(cell in text for cell in row)
+    print_table("T", Lines(["a", "b"], [["x", "long " * 100]]), console)
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert text.count("long") == 100
