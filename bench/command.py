@@ -91,11 +91,21 @@ def schema() -> None:
 
 
 @app.command()
-def report(scenarios: Paths = None, results: Results = Path("results")) -> None:
+def report(
+    scenarios: Paths = None,
+    against: Annotated[
+        str | None,
+        typer.Option(help="Label of an agent: compare all others with it, in pairs, in `against-LABEL.md` alone."),
+    ] = None,
+    results: Results = Path("results"),
+) -> None:
     """Print and write the tables and plots of what is recorded; nothing is run."""
-    from bench.session import report_all
+    from bench.session import compare_all, report_all
 
-    report_all(_scenarios(scenarios), results)
+    if against is None:
+        report_all(_scenarios(scenarios), results)
+    else:
+        compare_all(_scenarios(scenarios), against, results)
 
 
 @app.command()

@@ -1,5 +1,6 @@
 """What the commands do with scenario files: run them, check them, report on them."""
 
+import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -15,8 +16,12 @@ from bench.playing.pool import cpus
 from bench.playing.provenance import read_run
 from bench.playing.runner import Summary, run
 from bench.progress import Bars
+from bench.reading.blocks import near, one_of
 from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario, text_of
-from bench.reporting.report import READS, print_tables, write_report
+from bench.reporting.report import READS, print_tables, summary, write_report
+from bench.reporting.sections import comparisons
+from bench.reporting.tables import markdown, print_table
+from worlds.files import put
 from worlds.mistake import Mistake
 from worlds.types import MapError, Outcome
 
@@ -41,6 +46,31 @@ def report_all(paths: Sequence[Path], results: Path) -> None:
     """Report on all that is recorded of some scenarios, however many episodes their files ask for."""
     console = Console()
     _each(read_all(paths, sys.maxsize), console, lambda each: _report(each, results / each.name, console))
+
+
+def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
+    """Compare all agents of some scenarios with the one of a label, in the variants where it plays."""
+    console = Console()
+
+    def compare(scenario: Scenario) -> None:
+        scenario, folder = _against(scenario, label), results / scenario.name
+        read_run(folder)
+        lines = comparisons(summary(store.read(folder, scenario, READS), scenario), scenario)
+        print_table("Paired", lines, console)
+        page = folder / ("-".join(["against", *re.findall(r"\w+", label)]) + ".md")
+        put(page, f"# {scenario.name}, against {label}\n\n{markdown(lines)}".encode())
+        _say(f"The table is in {page}", console)
+
+    _each(read_all(paths, sys.maxsize), console, compare)
+
+
+def _against(scenario: Scenario, label: str) -> Scenario:
+    labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
+    if label not in labels:
+        meant = f" Did you mean {near(label, labels)}?" if near(label, labels) else ""
+        raise Mistake(f"--against, {scenario.path}: got {label}; expected {one_of(labels)}.{meant}")
+    having = [variant for variant in scenario.variants if any(entry.label == label for entry in variant.agents)]
+    return replace(scenario, variants=tuple(replace(variant, reference=label) for variant in having))
 
 
 def check_all(paths: Sequence[Path]) -> None:
@@ -108,8 +138,8 @@ def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> b
         raise Mistake(f"{scenario.path}: got no agent that can play here; `fogbench check {scenario.path}` says why.")
     _refuse_too_many(scenario)
     with Bars(scenario.name, console) as bars:
-        summary = run(scenario, folder, workers, bars.watch)
-    _say(_counts(summary), console)
+        played = run(scenario, folder, workers, bars.watch)
+    _say(_counts(played), console)
     return _report(scenario, folder, console)
 
 
@@ -143,9 +173,9 @@ def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
             yield f"    {entry.label} is skipped: {entry.skipped}"
 
 
-def _counts(summary: Summary) -> str:
-    ended = ", ".join(f"{count} {outcome.name}" for outcome, count in summary.outcomes.most_common())
-    return f"{summary.kept} episodes were recorded before, {summary.outcomes.total()} were played now. {ended}"
+def _counts(played: Summary) -> str:
+    ended = ", ".join(f"{count} {outcome.name}" for outcome, count in played.outcomes.most_common())
+    return f"{played.kept} episodes were recorded before, {played.outcomes.total()} were played now. {ended}"
 
 
 def _report(scenario: Scenario, folder: Path, console: Console) -> bool:

@@ -72,6 +72,21 @@ def test_a_run_leaves_tables_and_plots_and_goes_on_where_it_was(fogbench: Fogben
     assert fogbench("report", "small.yaml")[0] == 0
 
 
+def test_a_report_compares_with_whom_one_asks_for(fogbench: Fogbench) -> None:
+    """In a file of its own, beside the report; a label that is none of the scenario's is told with the nearest."""
+    write("small", "[astar, frontier, memoryless: {label: no memory}]")
+    fogbench("run", "small.yaml")
+    before = Path("results/small/summary.md").read_text()
+    code, out, _ = fogbench("report", "small.yaml", "--against", "no memory")
+    assert (code, "The table is in results/small/against-no-memory.md" in out) == (0, True)
+    rows = [line.split("|")[2:4] for line in Path("results/small/against-no-memory.md").read_text().splitlines()[4:]]
+    assert [[cell.strip() for cell in row] for row in rows] == [["astar", "no memory"], ["frontier", "no memory"]]
+    assert Path("results/small/summary.md").read_text() == before
+    code, _, err = fogbench("report", "small.yaml", "--against", "fronteir")
+    expected = "expected one of astar, frontier, no memory. Did you mean frontier?"
+    assert (code, err) == (2, f"--against, small.yaml: got fronteir; {expected}\n")
+
+
 def test_a_crash_is_told_and_stays_in_the_exit_code(fogbench: Fogbench) -> None:
     """A later run that plays nothing does not forget it."""
     write("crash", '[astar, "./mine.py:Broken"]')
