@@ -116,7 +116,8 @@ def _spaces(variant: Variant, entry: Entry, rows: pd.DataFrame, out: Path) -> st
     planes = [(name, embedded(points), separable[name]) for name, points in _tracked(decisions.spaces.items(), "t-SNE")]
     told = f"{entry.label} in {variant.name}: {told}"
     chance = f"the commonest move: {100 * decisions.commonest():.1f} %"
-    spaces(planes, decisions.moves, f"{told} ({chance})").savefig(out, dpi=200)
+    meaning = f"Over each: how often the nearest decision of another episode has the same optimal move ({chance})"
+    spaces(planes, decisions.moves, f"{told}\n{meaning}").savefig(out, dpi=200)
     found = ", ".join(f"{name} {100 * share:.1f} %" for name, share in separable.items())
     return f"{told}. The nearest of another episode has the same optimal move: {found} ({chance}). Drawn in {out}"
 

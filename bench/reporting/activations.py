@@ -35,6 +35,7 @@ def activations(parts: Mapping[str, Array], marks: Mapping[str, int], title: str
         marks: steps to mark, by name.
         title: one line.
     """
+    marks = _together(marks)
     heights = [float(np.clip(held.shape[1] / 100, 1.2, 2.4)) for held in parts.values()]
     with rc_context({**STYLE, "axes.grid": False}):
         figure = Figure(figsize=(9, 2.6 + sum(heights)), layout="constrained")
@@ -49,6 +50,14 @@ def activations(parts: Mapping[str, Array], marks: Mapping[str, int], title: str
         if marks:
             figure.legend(lines, _named(marks), loc="outside upper right", ncols=len(marks))
     return figure
+
+
+def _together(marks: Mapping[str, int]) -> dict[str, int]:
+    """The marks, those of one step under one name: a line would hide the other."""
+    at: dict[int, list[str]] = {}
+    for name, step in marks.items():
+        at.setdefault(step, []).append(name)
+    return {" and ".join(names): step for step, names in at.items()}
 
 
 def _named(marks: Mapping[str, int]) -> list[str]:
@@ -74,5 +83,5 @@ def _heat(axes: Axes, held: Array) -> None:
 def _changes(axes: Axes, parts: Mapping[str, Array]) -> None:
     for (part, held), colour in zip(parts.items(), COLOURS, strict=False):
         axes.plot(changes(held), color=colour, linewidth=1, label=part)
-    axes.set(xlabel="step", ylabel="change", yscale="log", xlim=(-0.5, len(held) - 0.5))
+    axes.set(xlabel="step", ylabel="Euclidean change", yscale="log", xlim=(-0.5, len(held) - 0.5))
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=len(parts))

@@ -40,3 +40,11 @@ def test_a_map_for_each_part_and_the_change_below(marks: dict[str, int]) -> None
         assert [line.get_xdata()[0] for line in drawn] == list(marks.values())
     named = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     assert named == [f"{name} (step {step})" for name, step in marks.items()]
+
+
+def test_marks_of_one_step_are_one_line() -> None:
+    """A line over another would hide it."""
+    figure = activations(PARTS, {"end wall": 2, "turn": 2, "exit": 3}, "by hand")
+    assert [line.get_xdata()[0] for line in figure.axes[0].lines] == [2, 3]
+    named = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert named == ["end wall and turn (step 2)", "exit (step 3)"]
