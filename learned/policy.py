@@ -85,7 +85,7 @@ class Policy(Settings):
         return self.reading == "window" or extent in (None, self.size)
 
     def idle(self) -> frozenset[str]:
-        """The settings that mean nothing together with the others; giving one of them is a mistake."""
+        """The settings that mean nothing together with the others; to give one of them another value is a mistake."""
         return frozenset()
 
     def parameter_bytes(self) -> int:
@@ -121,7 +121,8 @@ class Policy(Settings):
                 raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
             settings.hold_to(card, block)
             settings._weights = card.sha256  # noqa: SLF001  its own
-        if isinstance(block, dict) and (odd := sorted(settings.idle() & block.keys())):
+        usual = {name: field.default for name, field in cls.model_fields.items()}
+        if odd := sorted(name for name in settings.idle() if getattr(settings, name) != usual[name]):
             raise Mistake(f"no {odd[0]}, which means nothing to such a network")
         extent: Any = (info.context or {}).get("extent")
         if not settings.fits(extent):

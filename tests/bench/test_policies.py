@@ -171,7 +171,10 @@ def test_a_variant_of_another_size_is_told(tmp_path: Path) -> None:
 
 def test_a_checkpoint_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
     """No file of that name, no name that ships, or none at all: one line each."""
-    assert told("vin", tmp_path) == "6:5  agents[1].vin.checkpoint: got nothing; expected text."
+    assert (
+        told("vin", tmp_path)
+        == "6:5  agents[1].vin.checkpoint: got nothing; expected text like none, macn-grid, ./mine.safetensors."
+    )
     assert told("vin: {checkpoint: no.safetensors}", tmp_path) == (
         "6:23  agents[1].vin.checkpoint: got no.safetensors; "
         f"expected an existing file (looked for {tmp_path}/no.safetensors)."
