@@ -19,25 +19,26 @@ def pair(cell: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
     return cell[columns].merge(reference[columns], on=world, suffixes=("_ours", "_theirs"))
 
 
-def _reached(pairs: pd.DataFrame) -> tuple[Array, Array]:
+def successes(pairs: pd.DataFrame) -> tuple[Array, Array]:
+    """[n] bool each: which episodes the agent solved, and which the other."""
     ours, theirs = pairs["outcome_ours"], pairs["outcome_theirs"]
     return np.asarray(ours == Outcome.REACHED.name), np.asarray(theirs == Outcome.REACHED.name)
 
 
 def _difference(pairs: pd.DataFrame) -> Estimate:
-    return difference(*_reached(pairs)).times(100)
+    return difference(*successes(pairs)).times(100)
 
 
 def _only_agent(pairs: pd.DataFrame) -> Estimate:
-    return Estimate(float(discordant(*_reached(pairs))[0]), n=len(pairs))
+    return Estimate(float(discordant(*successes(pairs))[0]), n=len(pairs))
 
 
 def _only_reference(pairs: pd.DataFrame) -> Estimate:
-    return Estimate(float(discordant(*_reached(pairs))[1]), n=len(pairs))
+    return Estimate(float(discordant(*successes(pairs))[1]), n=len(pairs))
 
 
 def _mid_p(pairs: pd.DataFrame) -> Estimate:
-    return Estimate(mcnemar(*discordant(*_reached(pairs))), n=len(pairs))
+    return Estimate(mcnemar(*discordant(*successes(pairs))), n=len(pairs))
 
 
 def _length_ratio(pairs: pd.DataFrame) -> Estimate:
@@ -49,7 +50,7 @@ def _number(pairs: pd.DataFrame) -> Estimate:
 
 
 COMMON = Over("common episodes", everything)
-SOLVED = Over("commonly solved episodes", lambda pairs: np.logical_and(*_reached(pairs)))
+SOLVED = Over("commonly solved episodes", lambda pairs: np.logical_and(*successes(pairs)))
 
 COMPARISONS = (
     Metric("success_difference", "success difference", "points", "higher", 1, COMMON,

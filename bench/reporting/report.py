@@ -13,6 +13,7 @@ from bench.reporting.pairs import COMPARISONS, pair
 from bench.reporting.sections import comparisons, failures, headline, page, skipped
 from bench.reporting.statistics import holm
 from bench.reporting.tables import print_table
+from bench.reporting.trainings import trainings
 from worlds.types import Outcome
 
 READS = (
@@ -65,7 +66,9 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
 
 
 def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
-    """Print the results, the comparisons, who was skipped, and who crashed or hung; nothing is cut off.
+    """Print the results, means over trainings, comparisons, who was skipped, and who crashed or hung.
+
+    Nothing is cut off.
 
     Args:
         frame: as for `summary`.
@@ -76,6 +79,7 @@ def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, c
     broken = frame[frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name])]
     for title, lines in (
         ("Results", headline(table, scenario, short=True)),
+        ("Trainings", trainings(frame, table, scenario)),
         ("Paired", comparisons(table, scenario)),
         ("Skipped", skipped(scenario)),
         ("Crashed or hung", failures(broken)),

@@ -10,6 +10,7 @@ from bench.reporting.metrics import METRICS, Metric
 from bench.reporting.pairs import COMPARISONS
 from bench.reporting.statistics import Estimate
 from bench.reporting.tables import NOTHING, Lines, heading, markdown, written
+from bench.reporting.trainings import trainings
 from worlds.types import Outcome
 
 ASKED = {metric.name: metric for metric in (*METRICS, *COMPARISONS)}
@@ -102,6 +103,7 @@ def page(
         *(f"![{plot.removesuffix('.png').replace('_', ' ')}]({plot})\n" for plot in plots),
     ]
     for title, lines in (
+        ("Trainings of one network: mean, lowest and highest", trainings(frame, table, scenario)),
         ("Paired with the reference agent, on the same episodes", comparisons(table, scenario)),
         ("Failures", failures(frame)),
         ("Skipped", skipped(scenario)),

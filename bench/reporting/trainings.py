@@ -1,0 +1,63 @@
+"""Several trainings of one network: their mean and their spread, since one of them alone may be luck.
+
+Words used here
+    trainings  agents of a variant whose labels differ only by `, seed N` at their end: `MACN` and `MACN, seed 1`
+"""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from bench.reading.scenario import Scenario, Variant
+from bench.reporting.metrics import METRICS, Metric
+from bench.reporting.pairs import COMPARISONS, pair, successes
+from bench.reporting.statistics import Estimate, mean
+from bench.reporting.tables import Lines, heading, number, written
+
+AVERAGED = tuple(
+    metric for metric in METRICS if metric.name in {"success", "path_ratio", "reference_ratio", "test_error"}
+)
+DIFFERENCE = next(metric for metric in COMPARISONS if metric.name == "success_difference")
+
+
+def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> Lines:
+    """Each network of several trainings: the means over them, and in brackets the lowest and the highest.
+
+    Args:
+        frame: the recorded episodes, with the columns `bench.reporting.report.READS`.
+        table: their summary.
+        scenario: says who plays against whom.
+    """
+    values = table.set_index(["variant", "agent", "metric"])["value"]
+    rows = []
+    for variant in scenario.variants:
+        cells = frame[frame["variant"] == variant.name]
+        for network, labels in _networks(variant, cells).items():
+            spreads = [_spread([values[variant.name, label, metric.name] for label in labels], metric)
+                       for metric in AVERAGED]  # fmt: skip
+            rows.append([variant.name, network, str(len(labels)), *spreads,
+                         written(_difference(cells, labels, variant.reference), DIFFERENCE)])  # fmt: skip
+    return Lines(["variant", "network", "trainings", *map(heading, (*AVERAGED, DIFFERENCE))], rows)
+
+
+def _networks(variant: Variant, cells: pd.DataFrame) -> dict[str, list[str]]:
+    """The labels of those trainings of each network that played, where they are several."""
+    networks: dict[str, list[str]] = {}
+    for entry in variant.agents:
+        if (cells["agent"] == entry.label).any():
+            networks.setdefault(re.sub(r", seed \d+$", "", entry.label), []).append(entry.label)
+    return {network: labels for network, labels in networks.items() if len(labels) > 1}
+
+
+def _spread(values: Sequence[float], metric: Metric) -> str:
+    return f"{number(float(np.mean(values)), metric)} ({number(min(values), metric)} to {number(max(values), metric)})"
+
+
+def _difference(cells: pd.DataFrame, labels: Sequence[str], reference: str) -> Estimate:
+    """Success minus that of the reference agent: of each episode the mean over trainings, then over episodes."""
+    pairs = pair(cells[cells["agent"].isin(labels)], cells[cells["agent"] == reference])
+    ours, theirs = successes(pairs)
+    each = pairs.assign(difference=ours.astype(np.float64) - theirs).groupby(["world_key", "episode"])["difference"]
+    return mean(each.mean()).times(100)
