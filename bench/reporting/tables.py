@@ -58,7 +58,7 @@ def number(value: float, metric: Metric) -> str:
     if metric.unit in SCALES:
         return scaled(value, metric.unit, metric.digits)
     least = 10.0**-metric.digits
-    return f"<{least:.{metric.digits}f}" if 0 < value < least / 2 else f"{value:.{metric.digits}f}"
+    return f"<{least:.{metric.digits}f}" if 0 < value < least / 2 else f"{value:z.{metric.digits}f}"
 
 
 def scaled(value: float, unit: str, digits: int = 3) -> str:

@@ -19,6 +19,7 @@ NAMED = {metric.name: metric for metric in METRICS}
     [
         ("success", Estimate(96.3, 94.94, 97.32, 1000), "96.3 [94.9, 97.3]"),
         ("success", Estimate(0.0, 0.0, 1.9, 200), "0.0 [0.0, 1.9]"),
+        ("success", Estimate(-0.3, -0.6, -0.04, 1000), "-0.3 [-0.6, 0.0]"),
         ("path_ratio", Estimate(1.05, n=1), "1.050"),
         ("path_ratio", Estimate(), "—"),
         ("path_ratio", Estimate(np.inf, n=1), "∞"),
