@@ -15,14 +15,13 @@ from bench.playing.chosen import chosen_row, chosen_rows, chosen_variant
 from bench.playing.loop import episode_stream, episode_world
 from bench.playing.milestones import milestones
 from bench.playing.replay import Moment, retrace
-from bench.reading.blocks import near
 from bench.reading.scenario import Entry, Scenario, Variant
 from bench.reading.tables import NETWORK
 from bench.reporting.activations import activations, table
 from bench.reporting.spaces import Decisions, embedded, spaces
 from bench.reporting.tables import markdown
 from planners.optimal import OptimalMoves
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, meant, near
 from worlds.types import Move
 
 if TYPE_CHECKING:
@@ -70,8 +69,7 @@ def _network(variant: Variant, label: str) -> Entry:
     if label in agents:
         why = f"is skipped ({agents[label].skipped})" if agents[label].skipped else "is no network"
         raise Mistake(f"--agent: got {label}, which {why}; expected {expected}.")
-    meant = near(label, networks)
-    raise Mistake(f"--agent: got {label}; expected {expected}." + (f" Did you mean {meant}?" if meant else ""))
+    raise Mistake(f"--agent: got {label}; expected {expected}.{meant(near(label, networks))}")
 
 
 def _watch(variant: Variant, entry: Entry, row: Mapping[str, Any]) -> Iterator[tuple[Moment, "Glimpse"]]:

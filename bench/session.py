@@ -16,13 +16,12 @@ from bench.playing.pool import cpus
 from bench.playing.provenance import read_run
 from bench.playing.runner import Summary, run
 from bench.progress import Bars
-from bench.reading.blocks import near, one_of
 from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario, text_of
 from bench.reporting.report import READS, print_tables, summary, write_report
 from bench.reporting.sections import comparisons
 from bench.reporting.tables import markdown, print_table
 from worlds.files import put
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, meant, near, one_of
 from worlds.types import MapError, Outcome
 
 Answer = TypeVar("Answer")
@@ -67,8 +66,8 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
 def _against(scenario: Scenario, label: str) -> Scenario:
     labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
     if label not in labels:
-        meant = f" Did you mean {near(label, labels)}?" if near(label, labels) else ""
-        raise Mistake(f"--against, {scenario.path}: got {label}; expected {one_of(labels)}.{meant}")
+        expected = f"{one_of(labels)}.{meant(near(label, labels))}"
+        raise Mistake(f"--against, {scenario.path}: got {label}; expected {expected}")
     having = [variant for variant in scenario.variants if any(entry.label == label for entry in variant.agents)]
     return replace(scenario, variants=tuple(replace(variant, reference=label) for variant in having))
 

@@ -1,10 +1,9 @@
 """Where the scenarios are: those that come with the project, and those a user names."""
 
-from difflib import get_close_matches
 from pathlib import Path
 
 import learned
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, meant, near, one_of
 
 RECIPES = Path(learned.__file__).with_name("recipes")
 """Where the recipes are that go by a name alone."""
@@ -43,11 +42,8 @@ def find_recipe(name: str) -> Path:
     path = shipped.get(name, Path(name)) if not Path(name).is_file() else Path(name)
     if path.is_file():
         return path
-    near = get_close_matches(name, shipped, n=1)
-    raise Mistake(
-        f"{name}: got no such file; expected a recipe file, or one of {', '.join(shipped)}."
-        + (f" Did you mean {near[0]}?" if near else "")
-    )
+    expected = f"a recipe file, or {one_of(shipped)}"
+    raise Mistake(f"{name}: got no such file; expected {expected}.{meant(near(name, shipped))}")
 
 
 def _find_one(name: str) -> list[Path]:
@@ -63,8 +59,6 @@ def _find_one(name: str) -> list[Path]:
     if name in shipped:
         return [shipped[name]]
     file = f"{name}.yaml"
-    near = [file] if Path(file).is_file() else get_close_matches(name, shipped, n=1)
-    raise Mistake(
-        f"{name}: got no such file; expected a scenario file, a folder of them, or one of {', '.join(shipped)}."
-        + (f" Did you mean {near[0]}?" if near else "")
-    )
+    likely = file if Path(file).is_file() else near(name, shipped)
+    expected = f"a scenario file, a folder of them, or {one_of(shipped)}"
+    raise Mistake(f"{name}: got no such file; expected {expected}.{meant(likely)}")

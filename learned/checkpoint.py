@@ -3,7 +3,6 @@
 import json
 import os
 from collections.abc import Callable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from safetensors.torch import load, save
 from torch import Tensor, nn
 
 from worlds.files import put, sha256
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, near, one_of
 
 SHIPPED = Path(__file__).with_name("checkpoints")
 """Where the checkpoints are that go by a name alone."""
@@ -52,8 +51,7 @@ def located(checkpoint: str, whole: Callable[[str], Path]) -> str:
     if not checkpoint.endswith(SUFFIX):
         names = [NONE, *sorted(file.stem for file in SHIPPED.glob(f"*{SUFFIX}"))]
         if checkpoint not in names:
-            near = get_close_matches(checkpoint, names, n=1)
-            raise Mistake(f"a file that ends in {SUFFIX}, or one of {', '.join(names)}", *near)
+            raise Mistake(f"a file that ends in {SUFFIX}, or {one_of(names)}", near(checkpoint, names))
         return checkpoint
     place = whole(checkpoint)
     if not os.path.isfile(place):  # noqa: PTH113  it takes any path

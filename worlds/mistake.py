@@ -1,4 +1,7 @@
-"""The one kind of error that is shown to a user as text alone."""
+"""The one kind of error that is shown to a user as text alone, and the valid name that is told with it."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
 
 
 class Mistake(ValueError):
@@ -12,3 +15,18 @@ class Mistake(ValueError):
 
 class Unavailable(Exception):
     """A package that an agent needs is not installed, so it is skipped; the text says how to get it."""
+
+
+def near(name: str, names: Iterable[str]) -> str:
+    """The name that is most like the given one; empty if none is."""
+    return next(iter(get_close_matches(name, names, n=1)), "")
+
+
+def one_of(names: Iterable[str]) -> str:
+    """What is expected where one of some names is."""
+    return f"one of {', '.join(names)}"
+
+
+def meant(name: str) -> str:
+    """The end of a text that proposes a name; empty without one."""
+    return f" Did you mean {name}?" if name else ""

@@ -7,9 +7,8 @@ from typing import Any
 import pandas as pd
 
 from bench.playing import store
-from bench.reading.blocks import near, one_of
 from bench.reading.scenario import Scenario, Variant
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, meant, near, one_of
 
 READS = ("variant", "agent", "episode", "outcome", "steps", "length", "shortest", "actions", "detail")
 """The columns of `bench.playing.episode.Episode` that a replay needs."""
@@ -60,5 +59,4 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
 def _unknown(option: str, got: str, names: Iterable[str]) -> Mistake:
     """An option that got none of the names it could have."""
     names = list(names)
-    meant = near(got, names)
-    return Mistake(f"{option}: got {got}; expected {one_of(names)}." + (f" Did you mean {meant}?" if meant else ""))
+    return Mistake(f"{option}: got {got}; expected {one_of(names)}.{meant(near(got, names))}")

@@ -1,7 +1,6 @@
 """A block of a file becomes an object of its settings class, or a fault for each thing that is wrong with it."""
 
-from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,6 +9,7 @@ from pydantic_core import ErrorDetails
 
 from bench.reading.positions import Fault, Value
 from bench.reading.shapes import Shape, shape
+from worlds.mistake import near, one_of
 from worlds.settings import Settings
 
 Block = TypeVar("Block", bound=Settings)
@@ -40,16 +40,6 @@ def read_block(settings: type[Block], value: Value, around: Mapping[str, Any], f
 def raised(error: BaseException) -> str:
     """What the code of a user raised, in one line."""
     return f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}"
-
-
-def near(name: str, names: Iterable[str]) -> str:
-    """The name that is most like the given one; empty if none is."""
-    return next(iter(get_close_matches(name, names, n=1)), "")
-
-
-def one_of(names: Iterable[str]) -> str:
-    """What is expected where one of some names is."""
-    return f"one of {', '.join(names)}"
 
 
 def _typed(value: Value, shape: Shape) -> Any:

@@ -9,9 +9,9 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from bench.reading.blocks import near, one_of, raised
+from bench.reading.blocks import raised
 from bench.reading.tables import EXTRAS, Table
-from worlds.mistake import Unavailable
+from worlds.mistake import Unavailable, near, one_of
 from worlds.settings import Settings
 from worlds.streams import digest
 

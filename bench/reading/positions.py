@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from worlds.mistake import meant
+
 
 class Fault(NamedTuple):
     """One mistake of a file; faults sort by their place."""
@@ -27,8 +29,7 @@ class Fault(NamedTuple):
     def text(self, file: str) -> str:
         """`file:line:column  path: got X; expected Y. Did you mean Z?`, in one line."""
         path = f"{self.path}: " if self.path else ""
-        near = f" Did you mean {self.near}?" if self.near else ""
-        return f"{file}:{self.line}:{self.column}  {path}got {self.got}; expected {self.expected}.{near}"
+        return f"{file}:{self.line}:{self.column}  {path}got {self.got}; expected {self.expected}.{meant(self.near)}"
 
 
 class Spot(NamedTuple):

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
-from bench.reading.blocks import near, one_of
 from bench.reading.document import parse
 from bench.reading.overlays import pages, settle
 from bench.reading.page import CONDITIONS, FileName
@@ -15,7 +14,7 @@ from bench.reading.reading import Reading, opened
 from bench.reading.scenario import wrong
 from bench.reading.tables import NETWORK
 from learned.recipe import Lesson, Recipe, Training, Worlds
-from worlds.mistake import Mistake
+from worlds.mistake import Mistake, near, one_of
 from worlds.types import MapFamily
 
 if TYPE_CHECKING:

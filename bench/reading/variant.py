@@ -4,11 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from bench.reading.blocks import near, one_of
 from bench.reading.page import Page
 from bench.reading.positions import Value
 from bench.reading.reading import Reading
 from bench.reading.tables import AGENT
+from worlds.mistake import near, one_of
 from worlds.types import AgentSettings
 
 

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter
 
 from bench.reading.scenario import Scenario
 from bench.reporting.curves import Bin, by_distance, distance_bins
-from bench.reporting.panels import Look, Looks, legend, percent
+from bench.reporting.panels import Look, Looks, arranged, legend, percent
 from bench.reporting.tables import scaled
 
 Frames = Mapping[str, pd.DataFrame]
@@ -33,8 +33,7 @@ def against_distance(frames: Frames, looks: Looks, scenario: Scenario) -> Figure
     Variants of one map family share their panels if their goals are ever farther away: no distance is in two of them.
     """
     joined = _joined(frames, scenario)
-    columns = min(3, len(joined))
-    rows = -(-len(joined) // columns)
+    rows, columns = arranged(len(joined))
     figure = Figure(figsize=(1.9 + 2.4 * columns, 0.4 + 4.4 * rows), layout="constrained")
     grid = figure.subplots(2 * rows, columns, sharey="row", squeeze=False)  # [2 rows, columns] success over memory
     panels = list(zip(grid[::2].flat, grid[1::2].flat, strict=True))

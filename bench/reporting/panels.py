@@ -57,9 +57,8 @@ def looks_of(scenario: Scenario) -> dict[str, Look]:
 
 
 def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Figure, list[Axes]]:
-    """A panel for each variant, at most three in a row."""
-    columns = min(3, len(names))
-    rows = -(-len(names) // columns)
+    """A panel for each variant."""
+    rows, columns = arranged(len(names))
     figure = Figure(figsize=(1.9 + 2.4 * columns, 0.6 + 2.2 * rows), layout="constrained")
     panels = list(figure.subplots(rows, columns, sharey=True, squeeze=False).flat)
     for axes in panels[len(names) :]:
@@ -70,6 +69,12 @@ def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Fig
     figure.supylabel(y, fontsize="medium")
     legend(figure, looks, lines=True)
     return figure, panels[: len(names)]
+
+
+def arranged(panels: int) -> tuple[int, int]:
+    """Rows and columns of so many panels, at most three in a row."""
+    columns = min(3, panels)
+    return -(-panels // columns), columns
 
 
 def legend(figure: Figure, looks: Looks, *, lines: bool) -> None:
