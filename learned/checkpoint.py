@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Container, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,10 @@ NONE = "none"
 """In the place of a checkpoint: fresh weights."""
 
 
+WEIGHTLESS = frozenset({"iterations", "memory_rows"})
+"""Settings on a card that no weight depends on."""
+
+
 class Card(BaseModel):
     """What a checkpoint says of itself."""
 
@@ -36,6 +40,30 @@ class Card(BaseModel):
     """Of the file of weights."""
     training: dict[str, Any] = {}
     """How it was made, and what it reached."""
+
+    def recognise(self, network: str, settings: Mapping[str, Any]) -> None:
+        """Compare it with a class of settings by names alone.
+
+        Raises:
+            Mistake: it is the card of another network, or of another version.
+        """
+        if self.network != network:
+            raise Mistake(f"a checkpoint of {network} (this is one of {self.network})")
+        if odd := sorted(self.settings.keys() ^ settings.keys()):
+            how = "has" if odd[0] in self.settings else "lacks"
+            raise Mistake(f"a checkpoint of this version (its card {how} {odd[0]})")
+
+    def compare(self, settings: Mapping[str, Any], given: Container[str]) -> None:
+        """Compare it with the settings that were laid over it, of which some were `given`.
+
+        Raises:
+            Mistake: they differ where they must not, or the card has no such values.
+        """
+        for name, value in sorted(self.settings.items()):
+            if settings[name] != value and name not in given:
+                raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
+            if settings[name] != value and name not in WEIGHTLESS:
+                raise Mistake(f"{name} {value}, with which the checkpoint was trained")
 
 
 def located(checkpoint: str, whole: Callable[[str], Path]) -> str:

@@ -1,10 +1,9 @@
 """What all learned policies share: settings that find their weights, and the decisions of one episode.
 
 A setting that a scenario does not give is as in the checkpoint's card; one that it does give must be as in the card,
-unless no weight depends on it (`FREE`).
+unless no weight depends on it (`learned.checkpoint.WEIGHTLESS`).
 """
 
-from collections.abc import Container
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Literal, Self, cast
 
@@ -21,7 +20,7 @@ from pydantic import (
 from torch import Tensor
 
 from learned import checkpoint
-from learned.checkpoint import NONE, Card
+from learned.checkpoint import NONE
 from learned.encoding import STILL, Frame, Inputs, encode, gather
 from learned.network import Network, settled, tensors
 from worlds.belief import KnownMap
@@ -31,9 +30,6 @@ from worlds.types import Cell, Move, Observation, Task
 
 Size = Annotated[int, Field(ge=1, le=1024)]
 """Of a part of a network."""
-
-FREE = frozenset({"checkpoint", "seed", "device", "iterations", "memory_rows"})
-"""Settings that may differ from those of the training."""
 
 
 class Policy(Settings):
@@ -114,12 +110,12 @@ class Policy(Settings):
         settings = read(block)
         if settings.checkpoint != NONE and isinstance(block, dict):
             card = checkpoint.read_card(checkpoint.place_of(settings.checkpoint))
-            settings.recognise(card)
+            card.recognise(cls.__name__, settings.trained())
             try:
                 settings = read(card.settings | block)
             except ValidationError as error:
                 raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
-            settings.hold_to(card, block)
+            card.compare(settings.trained(), block)
             settings._weights = card.sha256  # noqa: SLF001  its own
         usual = {name: field.default for name, field in cls.model_fields.items()}
         if odd := sorted(name for name in settings.idle() if getattr(settings, name) != usual[name]):
@@ -133,31 +129,6 @@ class Policy(Settings):
     def trained(self) -> dict[str, Any]:
         """The settings that a card of these weights has."""
         return self.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
-
-    def recognise(self, card: Card) -> None:
-        """Compare a card with these settings by its names alone.
-
-        Raises:
-            Mistake: it is the card of another network, or of another version.
-        """
-        if card.network != type(self).__name__:
-            raise Mistake(f"a checkpoint of {type(self).__name__} (this is one of {card.network})")
-        if odd := sorted(card.settings.keys() ^ self.trained().keys()):
-            how = "has" if odd[0] in card.settings else "lacks"
-            raise Mistake(f"a checkpoint of this version (its card {how} {odd[0]})")
-
-    def hold_to(self, card: Card, given: Container[str]) -> None:
-        """Compare these settings, of which some were given, with those on a card that they were laid over.
-
-        Raises:
-            Mistake: they differ where they must not, or the card has no such values.
-        """
-        said = self.trained()
-        for name, value in sorted(card.settings.items()):
-            if said[name] != value and name not in given:
-                raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
-            if said[name] != value and name not in FREE:
-                raise Mistake(f"{name} {value}, with which the checkpoint was trained")
 
 
 def _by(extent: tuple[float, ...]) -> str:
