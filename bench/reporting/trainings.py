@@ -56,8 +56,8 @@ def _spread(values: Sequence[float], metric: Metric) -> str:
 
 
 def _difference(cells: pd.DataFrame, labels: Sequence[str], reference: str) -> Estimate:
-    """Success minus that of the reference agent: of each episode the mean over trainings, then over episodes."""
+    """Success minus that of the reference agent: the mean over trainings of each episode that all of them played."""
     pairs = pair(cells[cells["agent"].isin(labels)], cells[cells["agent"] == reference])
     ours, theirs = successes(pairs)
     each = pairs.assign(difference=ours.astype(np.float64) - theirs).groupby(["world_key", "episode"])["difference"]
-    return mean(each.mean()).times(100)
+    return mean(each.mean()[each.count() == len(labels)]).times(100)
