@@ -16,7 +16,7 @@ from learned.encoding import Inputs
 from learned.network import Network
 from learned.policy import load
 from learned.recipe import Recipe, Training, Worlds
-from learned.rollout import Episode, Moment, Rollout, greedy, roll
+from learned.rollout import Episode, Hindsight, Moment, Rollout, greedy, roll
 from worlds.grid import GridWorld
 from worlds.mistake import Mistake
 from worlds.streams import digest, stream
@@ -84,8 +84,9 @@ class Student:
         training, first = self.recipe.training, self.batches * self.recipe.training.batch
         grown = part(done, training.curriculum.until if training.curriculum else 0.0)
         turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
+        kind = Hindsight if training.teacher.hindsight else Episode
         return [
-            draw_episode(*turns[number % len(turns)], "training", training.seed, number)
+            kind(*draw(*turns[number % len(turns)], "training", training.seed, number))
             for number in range(first, first + training.batch)
         ]
 
@@ -152,7 +153,7 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
     scores = {}
     for name, worlds in recipe.held_out.items():
         episodes = [
-            draw_episode(worlds, worlds.family, "validation", 0, number)  # the same for every seed
+            Episode(*draw(worlds, worlds.family, "validation", 0, number))  # the same for every seed
             for number in range(recipe.training.validation.episodes)
         ]
         with torch.no_grad():
@@ -172,7 +173,8 @@ def rehearse(recipe: Recipe) -> None:
     for place, worlds, family in recipe.places():
         try:
             listed = family.tasks(worlds.conditions)
-            recipe.network.frame(draw_episode(worlds, family, "training", 0, 0).world.task)
+            world, _ = draw(worlds, family, "training", 0, 0)
+            recipe.network.frame(world.task)
         except Mistake as error:
             raise Mistake(f"{recipe.name}: {place}: {error}.") from None
         if listed is not None:
@@ -180,10 +182,12 @@ def rehearse(recipe: Recipe) -> None:
             raise Mistake(f"{recipe.name}: {place}: {told}.")
 
 
-def draw_episode(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Episode:
-    """The episode of a number, on a map of `family`; that of another purpose shares no luck with it."""
+def draw(
+    worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int
+) -> tuple[GridWorld, np.random.Generator]:
+    """The world of a number on a map of `family`, and the luck in it; another purpose shares nothing with them."""
     map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {what}", number) for what in ("map", "luck"))
-    return Episode(cast(GridWorld, family.sample(map_luck, number, worlds.conditions)), luck)
+    return cast(GridWorld, family.sample(map_luck, number, worlds.conditions)), luck
 
 
 def pick(weights: Array, chances: Array) -> Array:

@@ -31,6 +31,8 @@ class Teacher(Settings):
     """Share of the episodes in which the teacher decides: at first, and from `until` on; `[1, 1]` is cloning."""
     until: Probability = 0.25
     """Part of the batches over which the share changes."""
+    hindsight: bool = False
+    """Whether, of the moves that are optimal on that map, only those count that are on the full map too, if any is."""
 
 
 class Curriculum(Settings):

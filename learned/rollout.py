@@ -18,8 +18,9 @@ from torch import Tensor
 from learned.encoding import SIGHT, STILL, Known, encode, gather
 from learned.network import Network, rows
 from learned.policy import Policy
-from planners.optimal import OptimalMoves
+from planners.optimal import OptimalMoves, nearer
 from worlds.belief import KnownMap
+from worlds.distances import distances
 from worlds.grid import GridWorld
 from worlds.types import BLOCKED, DELTAS, FREE, Array, Move, Observation
 
@@ -139,3 +140,22 @@ class Episode:
         step = self.world.step(self.state, Move(move), self.luck)
         self.state, self.move, self.reached = step.state, move, step.reached
         return not (step.reached or step.collided or self.state.step >= self.world.task.budget.steps)
+
+
+class Hindsight(Episode):
+    """One world, where of the moves that are optimal by what is known those count that turn out to be, if any does.
+
+    Which of equals turns out better depends on what lies out of sight; over many maps it tells where walls are likely.
+    """
+
+    def __init__(self, world: GridWorld, luck: np.random.Generator) -> None:
+        """Before the first step."""
+        super().__init__(world, luck)
+        self.distance = distances(world.blocked, world.task.goal, (-1, -1))  # [H, W], on the full map
+
+    def look(self) -> Array:
+        """As any episode does."""
+        optimal = super().look()
+        task, place = self.world.task, self.observation.place
+        best: Array = optimal & nearer(self.world.blocked, self.distance, place, task.goal)
+        return best if best.any() else optimal

@@ -35,7 +35,7 @@ class OptimalMoves:
         if changed or self.distance[place] > self.settled:
             self.distance = distances(self.blocked, self.goal, place)
             self.settled = int(self.distance[place])
-        return _nearer(self.blocked, self.distance, place, self.goal)
+        return nearer(self.blocked, self.distance, place, self.goal)
 
 
 @kernel
@@ -51,13 +51,20 @@ def _copy_walls(known: Array, place: Cell, reach: int, blocked: Array) -> bool:
 
 
 @kernel
-def _nearer(blocked: Array, distance: Array, place: Cell, goal: Cell) -> Array:
-    """Which of the four neighbours are nearer to the goal than `place`: [4] bool."""
-    nearer = np.zeros(4, np.bool_)
+def nearer(blocked: Array, distance: Array, place: Cell, goal: Cell) -> Array:
+    """Which of the four neighbours are nearer to the goal than `place`: [4] bool; none if there is no way to it.
+
+    Args:
+        blocked: [H, W] bool.
+        distance: [H, W] int32 from the goal, as `worlds.distances.distances` tells it.
+        place: where the agent is.
+        goal: where it should be.
+    """
+    found = np.zeros(4, np.bool_)
     if distance[place] == FAR or blocked[goal]:
-        return nearer
+        return found
     for move in range(4):
         r, c = place[0] + DELTAS[move][0], place[1] + DELTAS[move][1]
         inside = 0 <= r < distance.shape[0] and 0 <= c < distance.shape[1]
-        nearer[move] = inside and distance[r, c] == distance[place] - 1  # a blocked cell is FAR
-    return nearer
+        found[move] = inside and distance[r, c] == distance[place] - 1  # a blocked cell is FAR
+    return found

@@ -17,7 +17,7 @@ from learned.imitation import (
     Noisy,
     Student,
     access_weight,
-    draw_episode,
+    draw,
     imitation_loss,
     part,
     pick,
@@ -162,11 +162,11 @@ def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> No
     """Episodes of one number differ with their purpose, and repeat with it; the luck differs too."""
     ((worlds, _),) = recipe().lessons
     purposes = "training", "validation", "training"
-    drawn = [[draw_episode(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
-    maps = [[episode.world.blocked for episode in episodes] for episodes in drawn]
+    drawn = [[draw(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
+    maps = [[world.blocked for world, _ in pairs] for pairs in drawn]
     assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
-    chances = [[episode.luck.random() for episode in episodes] for episodes in drawn]
+    chances = [[luck.random() for _, luck in pairs] for pairs in drawn]
     assert chances[0] == chances[2] != chances[1]
 
 
@@ -178,7 +178,8 @@ def test_a_test_meets_other_maps_than_a_training() -> None:
     tested = {episode_world(variant, number).blocked.tobytes() for number in range(20)}
     for purpose in ("training", "validation"):
         for number in range(20):
-            assert draw_episode(worlds, worlds.family, purpose, 0, number).world.blocked.tobytes() not in tested
+            world, _ = draw(worlds, worlds.family, purpose, 0, number)
+            assert world.blocked.tobytes() not in tested
 
 
 def test_all_seeds_are_tried_on_the_same_maps(recipe: Callable[..., Recipe]) -> None:
