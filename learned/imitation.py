@@ -86,7 +86,7 @@ class Student:
         turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
         kind = Hindsight if training.teacher.hindsight else Episode
         return [
-            kind(*draw(*turns[number % len(turns)], "training", training.seed, number))
+            kind(*draw_world(*turns[number % len(turns)], "training", training.seed, number))
             for number in range(first, first + training.batch)
         ]
 
@@ -153,7 +153,7 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
     scores = {}
     for name, worlds in recipe.held_out.items():
         episodes = [
-            Episode(*draw(worlds, worlds.family, "validation", 0, number))  # the same for every seed
+            Episode(*draw_world(worlds, worlds.family, "validation", 0, number))  # the same for every seed
             for number in range(recipe.training.validation.episodes)
         ]
         with torch.no_grad():
@@ -173,7 +173,7 @@ def rehearse(recipe: Recipe) -> None:
     for place, worlds, family in recipe.places():
         try:
             listed = family.tasks(worlds.conditions)
-            world, _ = draw(worlds, family, "training", 0, 0)
+            world, _ = draw_world(worlds, family, "training", 0, 0)
             recipe.network.frame(world.task)
         except Mistake as error:
             raise Mistake(f"{recipe.name}: {place}: {error}.") from None
@@ -182,7 +182,7 @@ def rehearse(recipe: Recipe) -> None:
             raise Mistake(f"{recipe.name}: {place}: {told}.")
 
 
-def draw(
+def draw_world(
     worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int
 ) -> tuple[GridWorld, np.random.Generator]:
     """The world of a number on a map of `family`, and the luck in it; another purpose shares nothing with them."""

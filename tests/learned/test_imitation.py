@@ -17,7 +17,7 @@ from learned.imitation import (
     Noisy,
     Student,
     access_weight,
-    draw,
+    draw_world,
     imitation_loss,
     part,
     pick,
@@ -28,7 +28,7 @@ from learned.imitation import validate as tried
 from learned.macn import Macn
 from learned.policy import weighted
 from learned.recipe import Curriculum, Lesson, Recipe, Teacher, Training, Validation, Worlds
-from learned.rollout import Episode, Moment, Rollout, roll
+from learned.rollout import Episode, Hindsight, Moment, Rollout, roll
 from worlds.blobs import Blobs
 from worlds.mistake import Mistake
 from worlds.movingai import MovingAI
@@ -162,7 +162,7 @@ def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> No
     """Episodes of one number differ with their purpose, and repeat with it; the luck differs too."""
     ((worlds, _),) = recipe().lessons
     purposes = "training", "validation", "training"
-    drawn = [[draw(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
+    drawn = [[draw_world(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
     maps = [[world.blocked for world, _ in pairs] for pairs in drawn]
     assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
@@ -178,7 +178,7 @@ def test_a_test_meets_other_maps_than_a_training() -> None:
     tested = {episode_world(variant, number).blocked.tobytes() for number in range(20)}
     for purpose in ("training", "validation"):
         for number in range(20):
-            world, _ = draw(worlds, worlds.family, purpose, 0, number)
+            world, _ = draw_world(worlds, worlds.family, purpose, 0, number)
             assert world.blocked.tobytes() not in tested
 
 
@@ -206,6 +206,22 @@ def test_the_teacher_and_the_rate_give_way_over_the_batches(
         rates.append(student.optimiser.param_groups[0]["lr"])
     assert shares == pytest.approx([1, 0.6, 0.2, 0.2])
     assert rates == pytest.approx([1e-2, 1e-2, 1e-2, 1e-3])
+
+
+def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A recipe with it learns from other episodes than one without, and is tried on the same."""
+    kinds = list[set[type]]()
+
+    def spy(*arguments: Any) -> Rollout:
+        kinds.append({type(episode) for episode in arguments[2]})
+        return roll(*arguments)
+
+    monkeypatch.setattr("learned.imitation.roll", spy)
+    for hindsight in (False, True):
+        taught = recipe(batches=1, teacher=Teacher(hindsight=hindsight))
+        Student(taught).learn()
+        tried(taught, SMALL.network())
+    assert kinds == [{Episode}, {Episode}, {Hindsight}, {Episode}]
 
 
 @pytest.mark.parametrize(("name", "kind"), [("adam", torch.optim.Adam), ("rmsprop", torch.optim.RMSprop)])

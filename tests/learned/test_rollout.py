@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import networkx as nx
 import numpy as np
 import pytest
 import torch
@@ -12,13 +13,13 @@ from bench.playing.judge import GridJudge
 from learned.cnn_memory import CnnMemory
 from learned.macn import Macn
 from learned.policy import Policy, PolicyAgent, load, weighted
-from learned.rollout import Episode, Moment, Rollout, greedy, roll
+from learned.rollout import Episode, Hindsight, Moment, Rollout, greedy, roll
 from learned.vin import Vin
 from worlds.blobs import Blobs
 from worlds.grid import GridWorld
 from worlds.mistake import Mistake
 from worlds.tunnel import Tunnel
-from worlds.types import Array, Move, Observation, Outcome
+from worlds.types import DELTAS, Array, Move, Observation, Outcome
 
 SMALL = {"checkpoint": "none", "size": (7, 7), "features": 16, "hidden": 16}
 
@@ -100,10 +101,48 @@ def luck(number: int) -> np.random.Generator:
     return np.random.default_rng(100 + number)
 
 
-def played(policy: Policy, worlds: list[GridWorld]) -> tuple[Rollout, list[list[Seen]]]:
+def played(policy: Policy, worlds: list[GridWorld], kind: type[Episode] = Episode) -> tuple[Rollout, list[list[Seen]]]:
     """A rollout of some worlds at random."""
-    spy = Spy([Episode(world, luck(k)) for k, world in enumerate(worlds)])
+    spy = Spy([kind(world, luck(k)) for k, world in enumerate(worlds)])
     return roll(policy, weighted(policy), spy.episodes, spy), spy.seen
+
+
+def first_look(kind: type[Episode], world: GridWorld) -> list[str]:
+    """The moves that count at the start."""
+    return [Move(move).name for move in np.flatnonzero(kind(world, luck(0)).look())]
+
+
+def test_hindsight_takes_the_better_of_equals(draw: Callable[..., GridWorld]) -> None:
+    """Down and right look alike with a view of one cell; but below everything is closed, out of sight."""
+    world = draw("S.... ..#.. ##... ..... ....G", radius=1)
+    assert first_look(Episode, world) == ["DOWN", "RIGHT"]
+    assert first_look(Hindsight, world) == ["RIGHT"]
+
+
+def test_hindsight_asks_for_nothing_that_cannot_be_known(draw: Callable[..., GridWorld]) -> None:
+    """Where what looks best turns out to be a dead end, it is taught all the same."""
+    world = draw("..... .#... S.#.G .#... .....", radius=1)
+    assert first_look(Episode, world) == first_look(Hindsight, world) == ["RIGHT"]
+
+
+@pytest.mark.parametrize("rules", RULES, ids=["exact", "noisy", "occluded"])
+def test_hindsight_is_what_both_maps_agree_on(conditions: Callable[..., Any], rules: dict[str, Any]) -> None:
+    """Along random walks, against networkx on the full map; some decisions are narrowed, the others as they were."""
+    family = Blobs(size=16, obstacles=(15, 30), obstacle_size=(1, 4))
+    worlds = [family.sample(np.random.default_rng(k), 0, conditions(steps=30, **rules)) for k in range(12)]
+    (_, known), (_, seen) = (played(POLICIES[2], worlds, kind) for kind in (Episode, Hindsight))  # the same walks
+    narrowed = 0
+    for world, before, after in zip(worlds, known, seen, strict=True):
+        graph = nx.grid_2d_graph(*world.blocked.shape)
+        graph.remove_nodes_from(zip(*np.nonzero(world.blocked), strict=True))
+        distance = nx.single_source_shortest_path_length(graph, world.task.goal)
+        for own, both in zip(before, after, strict=True):
+            (row, column), far = own.observation.place, distance[own.observation.place]
+            ahead = [distance.get((row + down, column + right)) == far - 1 for down, right in DELTAS]
+            agreed = own.optimal & ahead
+            assert both.optimal.tolist() == (agreed if agreed.any() else own.optimal).tolist()
+            narrowed += both.optimal.sum() < own.optimal.sum()
+    assert 0 < narrowed < sum(map(len, seen))
 
 
 @pytest.mark.parametrize("rules", RULES, ids=["exact", "noisy", "occluded"])
