@@ -146,7 +146,10 @@ def load(settings: Policy) -> Network:
         network = settings.network().eval()
     if settings.checkpoint != NONE:
         place = checkpoint.place_of(settings.checkpoint)
-        checkpoint.read_weights(place, checkpoint.read_card(place), network)
+        card = checkpoint.read_card(place)
+        if card.sha256 != settings._weights:  # noqa: SLF001  whose words name them
+            raise Mistake(f"a checkpoint that stays as it was ({place.name} was replaced meanwhile)")
+        checkpoint.read_weights(place, card, network)
     return network.to(settings.device)
 
 

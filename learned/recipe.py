@@ -58,7 +58,7 @@ class Training(Settings):
 
     batches: Positive
     """How many, each of fresh maps."""
-    batch: Positive = 128
+    batch: Annotated[int, Field(ge=1, le=10_000)] = 128
     """Episodes of a batch."""
     teacher: Teacher = Teacher()
     curriculum: Curriculum | None = None

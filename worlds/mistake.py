@@ -1,4 +1,4 @@
-"""The one kind of error that is shown to a user as text alone, and the valid name that is told with it."""
+"""What is told to a user as text alone: the one kind of error, its nearest valid name, and what is not installed."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches

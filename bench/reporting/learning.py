@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from bench.reporting.panels import COLOURS, MARKS, STYLE
+from bench.reporting.panels import STYLE, look_of
 
 
 def write_curves(trials: Sequence[Mapping[str, Any]], folder: Path) -> None:
@@ -23,8 +23,7 @@ def curves(trials: Sequence[Mapping[str, Any]]) -> Figure:
     for axes, metric in zip(figure.subplots(1, 2), ("test_error", "success"), strict=True):
         for k, variant in enumerate(trials[0]["variants"]):
             reached = [trial["variants"][variant][metric] for trial in trials]
-            look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKS[k % len(MARKS)]}
-            axes.plot(batches, reached, label=variant, markersize=3, **look)
+            axes.plot(batches, reached, label=variant, markersize=3, **look_of(k)._asdict())
         axes.set_xlabel("batches")
         axes.set_ylabel(f"{metric.replace('_', ' ')} on held-out maps [%]")
         axes.set_ylim(bottom=0)

@@ -1,4 +1,4 @@
-"""Questions to two agents at once: an agent and the scenario's reference agent, on the episodes that both played.
+"""Questions to two agents at once: an agent and the one it is compared with, on the episodes that both played.
 
 Words used here
     pairs      a table of those episodes, with `outcome` and `length` of the agent (`*_ours`) and the other (`*_theirs`)

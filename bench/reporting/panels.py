@@ -50,10 +50,13 @@ Looks = Mapping[str, Look]
 def looks_of(scenario: Scenario) -> dict[str, Look]:
     """The look of each agent of a scenario, whether it ran or not."""
     labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
-    return {
-        label: Look(COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)], DASHES[(k + k // len(COLOURS)) % len(DASHES)])
-        for k, label in enumerate(labels)
-    }
+    return {label: look_of(number) for number, label in enumerate(labels)}
+
+
+def look_of(number: int) -> Look:
+    """The look of the first (0), the second, ... of many."""
+    colour, mark = COLOURS[number % len(COLOURS)], MARKS[number % len(MARKS)]
+    return Look(colour, mark, DASHES[(number + number // len(COLOURS)) % len(DASHES)])
 
 
 def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Figure, list[Axes]]:

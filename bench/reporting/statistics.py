@@ -87,20 +87,24 @@ def _bootstrap(samples: Array, statistic: Callable[..., Any]) -> Estimate:
     return Estimate(value, float(drawn.confidence_interval.low), float(drawn.confidence_interval.high), n)
 
 
-def difference(ours: Array, theirs: Array) -> Estimate:
-    """The difference of two shares over the same n episodes, [n] bool each, with the interval of Bonett & Price (2012).
+def difference(ours: ArrayLike, theirs: ArrayLike) -> Estimate:
+    """The mean difference of n paired successes, with the interval of Bonett & Price (2012).
 
     It is Wald's interval with one episode added to each kind of discordant pair, which keeps it honest where there are
     few or none (recommended by Fagerland, Lydersen & Laake 2014, section 5).
+
+    Args:
+        ours: [n] bool, or of several trainings the share of them that succeeded, 0 to 1.
+        theirs: the same of whom they are compared with.
     """
-    n = len(ours)
+    each = np.asarray(ours, np.float64) - np.asarray(theirs, np.float64)  # [n], -1 to 1
+    n = len(each)
     if n == 0:
         return Estimate()
-    b, c = discordant(ours, theirs)
-    more, less = (b + 1) / (n + 2), (c + 1) / (n + 2)
-    width = stats.norm.ppf((1 + CONFIDENCE) / 2) * np.sqrt((more + less - (more - less) ** 2) / (n + 2))
-    low, high = max(-1.0, more - less - width), min(1.0, more - less + width)
-    return Estimate((b - c) / n, float(low), float(high), n)
+    added = np.concatenate([each, [1.0, -1.0]])  # [n + 2]
+    width = stats.norm.ppf((1 + CONFIDENCE) / 2) * added.std() / np.sqrt(n + 2)
+    low, high = max(-1.0, added.mean() - width), min(1.0, added.mean() + width)
+    return Estimate(float(each.mean()), float(low), float(high), n)
 
 
 def discordant(ours: Array, theirs: Array) -> tuple[int, int]:

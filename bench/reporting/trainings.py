@@ -13,8 +13,8 @@ import pandas as pd
 from bench.reading.scenario import Scenario, Variant
 from bench.reporting.metrics import METRICS, Metric
 from bench.reporting.pairs import COMPARISONS, pair, successes
-from bench.reporting.statistics import Estimate, mean
-from bench.reporting.tables import Lines, heading, number, written
+from bench.reporting.statistics import Estimate, difference
+from bench.reporting.tables import NOTHING, Lines, heading, number, written
 
 AVERAGED = tuple(
     metric for metric in METRICS if metric.name in {"success", "path_ratio", "reference_ratio", "test_error"}
@@ -24,6 +24,8 @@ DIFFERENCE = next(metric for metric in COMPARISONS if metric.name == "success_di
 
 def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> Lines:
     """Each network of several trainings: the means over them, and in brackets the lowest and the highest.
+
+    The interval of the difference from the reference agent is one over episodes, for these trainings.
 
     Args:
         frame: the recorded episodes, with the columns `bench.reporting.report.READS`.
@@ -37,27 +39,32 @@ def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> L
         for network, labels in _networks(variant, cells).items():
             spreads = [_spread([values[variant.name, label, metric.name] for label in labels], metric)
                        for metric in AVERAGED]  # fmt: skip
-            rows.append([variant.name, network, str(len(labels)), *spreads,
-                         written(_difference(cells, labels, variant.reference), DIFFERENCE)])  # fmt: skip
+            apart = _difference(cells, labels, variant.reference)
+            rows.append([variant.name, network, str(len(labels)), *spreads, written(apart, DIFFERENCE)])
     return Lines(["variant", "network", "trainings", *map(heading, (*AVERAGED, DIFFERENCE))], rows)
 
 
 def _networks(variant: Variant, cells: pd.DataFrame) -> dict[str, list[str]]:
-    """The labels of those trainings of each network that played, where they are several."""
+    """The labels of those trainings of each network that played as many episodes as most, where they are several."""
+    played = cells["agent"].value_counts()
     networks: dict[str, list[str]] = {}
     for entry in variant.agents:
-        if (cells["agent"] == entry.label).any():
+        if played.get(entry.label) == played.max() and entry.label != variant.reference:
             networks.setdefault(re.sub(r", seed \d+$", "", entry.label), []).append(entry.label)
     return {network: labels for network, labels in networks.items() if len(labels) > 1}
 
 
 def _spread(values: Sequence[float], metric: Metric) -> str:
-    return f"{number(float(np.mean(values)), metric)} ({number(min(values), metric)} to {number(max(values), metric)})"
+    """Of those that are known: a training that never reached the goal has no length."""
+    known = [value for value in values if np.isfinite(value)]
+    if not known:
+        return NOTHING
+    return f"{number(float(np.mean(known)), metric)} ({number(min(known), metric)} to {number(max(known), metric)})"
 
 
 def _difference(cells: pd.DataFrame, labels: Sequence[str], reference: str) -> Estimate:
-    """Success minus that of the reference agent: the mean over trainings of each episode that all of them played."""
+    """Success minus that of the reference agent; of an episode, the mean over trainings."""
     pairs = pair(cells[cells["agent"].isin(labels)], cells[cells["agent"] == reference])
     ours, theirs = successes(pairs)
-    each = pairs.assign(difference=ours.astype(np.float64) - theirs).groupby(["world_key", "episode"])["difference"]
-    return mean(each.mean()[each.count() == len(labels)]).times(100)
+    each = pairs.assign(ours=ours, theirs=theirs).groupby(["world_key", "episode"])[["ours", "theirs"]].mean()
+    return difference(each["ours"], each["theirs"]).times(100)

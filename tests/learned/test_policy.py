@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from learned.cnn_memory import CnnMemory
 from learned.macn import Macn
 from learned.network import Network
-from learned.policy import Policy, PolicyAgent, weighted
+from learned.policy import Policy, PolicyAgent, load, weighted
 from learned.vin import Vin
 from worlds.mistake import Mistake
 from worlds.types import Move, Task
@@ -142,6 +142,15 @@ def test_words_are_those_of_the_weights(save: Save, tmp_path: Path) -> None:
     assert Vin(checkpoint=str(file), iterations=3).words() != words
     other = save(Vin(checkpoint="none", seed=1), "other")
     assert Vin(checkpoint=other).words() != words
+
+
+def test_weights_that_were_replaced_are_not_played(save: Save) -> None:
+    """Once settings are read, a file that comes in their checkpoint's place is no longer what their words name."""
+    policy = Vin(checkpoint=save(Vin(checkpoint="none"), "mine"))
+    save(Vin(checkpoint="none", seed=1), "mine")
+    with pytest.raises(Mistake) as caught:
+        load(policy)
+    assert str(caught.value) == "a checkpoint that stays as it was (mine.safetensors was replaced meanwhile)"
 
 
 def test_bytes_of_every_memory(draw: Callable[..., Any]) -> None:
