@@ -129,7 +129,11 @@ BROKEN = [
     ("share: [1, 0.1]", "share: 1", ["9:18  teacher.share: got 1; expected two numbers from 0 to 1."]),
     ("share: [1, 0.1]", "share: [1, 2]", ["9:22  teacher.share[1]: got 2; expected a number from 0 to 1."]),
     ("share: [1, 0.1]", "hindsight: 2", ["9:22  teacher.hindsight: got 2; expected true or false."]),
-    ("batches: 100", "batches: 100\nbatch: 10001", ["11:8  batch: got 10001; expected a whole number from 1 to 10000."]),
+    (
+        "batches: 100",
+        "batches: 100\nbatch: 10001",
+        ["11:8  batch: got 10001; expected a whole number from 1 to 10000."],
+    ),
     ("batches: 100", "batches: 0", ["10:10  batches: got 0; expected a whole number of at least 1."]),
     (
         "batches: 100",
