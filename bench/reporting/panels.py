@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
 
 from bench.reading.scenario import Scenario
+from bench.reporting.trainings import network_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C6D31")
 """Told apart by the colour-blind too (Okabe & Ito 2008), the palest left out."""
@@ -48,9 +49,10 @@ Looks = Mapping[str, Look]
 
 
 def looks_of(scenario: Scenario) -> dict[str, Look]:
-    """The look of each agent of a scenario, whether it ran or not."""
+    """The look of each agent of a scenario, whether it ran or not; trainings of one network look alike."""
     labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
-    return {label: look_of(number) for number, label in enumerate(labels)}
+    networks = {network: look_of(number) for number, network in enumerate(dict.fromkeys(map(network_of, labels)))}
+    return {label: networks[network_of(label)] for label in labels}
 
 
 def look_of(number: int) -> Look:
@@ -83,8 +85,8 @@ def arranged(panels: int) -> tuple[int, int]:
 def legend(figure: Figure, looks: Looks, *, lines: bool) -> None:
     """One legend over the figure, in as many columns as fit; without `lines` it shows the marks alone."""
     handles = [
-        Line2D([], [], color=look.color, marker=look.marker, linestyle=look.linestyle if lines else "", label=agent)
-        for agent, look in looks.items()
+        Line2D([], [], color=look.color, marker=look.marker, linestyle=look.linestyle if lines else "", label=network)
+        for network, look in {network_of(agent): look for agent, look in looks.items()}.items()
     ]
     for columns in range(len(handles), 0, -1):
         length = 3 if lines else 1

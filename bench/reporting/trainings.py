@@ -44,13 +44,18 @@ def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> L
     return Lines(["variant", "network", "trainings", *map(heading, (*AVERAGED, DIFFERENCE))], rows)
 
 
+def network_of(label: str) -> str:
+    """The network that an agent is a training of, by its label; that of any other agent is itself."""
+    return re.sub(r", seed \d+$", "", label)
+
+
 def _networks(variant: Variant, cells: pd.DataFrame) -> dict[str, list[str]]:
     """The labels of those trainings of each network that played as many episodes as most, where they are several."""
     played = cells["agent"].value_counts()
     networks: dict[str, list[str]] = {}
     for entry in variant.agents:
         if played.get(entry.label) == played.max() and entry.label != variant.reference:
-            networks.setdefault(re.sub(r", seed \d+$", "", entry.label), []).append(entry.label)
+            networks.setdefault(network_of(entry.label), []).append(entry.label)
     return {network: labels for network, labels in networks.items() if len(labels) > 1}
 
 

@@ -146,6 +146,19 @@ def test_an_axis_of_ratios_makes_nothing_of_noise(frame: pd.DataFrame, make: Mak
     assert axes.yaxis.get_major_formatter().get_useOffset() is False
 
 
+def test_trainings_of_one_network_look_alike(recorded: Recorded, make: Make) -> None:
+    """They share a look that no other has, and their place in the legend, which has the network's name."""
+    labels = ("Net", "Net, seed 1", "Net, seed 2")
+    scenario = make(agents=[*({"random_walk": {"label": label}} for label in labels), "astar"], reference="astar")
+    looks = looks_of(scenario)
+    assert len({looks[label] for label in labels}) == 1
+    assert looks["astar"] != looks["Net"]
+    frame = recorded({}, *({"agent": label} for label in labels)).assign(episode=0)
+    for figure in draw_figures(frame, summary(frame, scenario), scenario).values():
+        (legend,) = figure.legends
+        assert [text.get_text() for text in legend.texts] == ["Net", "astar"]
+
+
 def test_a_legend_is_inside_its_figure() -> None:
     """However many agents there are and however long their labels."""
     for count, length in ((2, 5), (17, 12), (9, 40)):
