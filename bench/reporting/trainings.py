@@ -50,13 +50,14 @@ def network_of(label: str) -> str:
 
 
 def _networks(variant: Variant, cells: pd.DataFrame) -> dict[str, list[str]]:
-    """The labels of those trainings of each network that played as many episodes as most, where they are several."""
+    """The labels of the trainings of each network, where several have played, and all of them as much."""
     played = cells["agent"].value_counts()
     networks: dict[str, list[str]] = {}
-    for entry in variant.agents:
-        if played.get(entry.label) == played.max() and entry.label != variant.reference:
-            networks.setdefault(network_of(entry.label), []).append(entry.label)
-    return {network: labels for network, labels in networks.items() if len(labels) > 1}
+    for label in (entry.label for entry in variant.agents):
+        if label in played and label != variant.reference:
+            networks.setdefault(network_of(label), []).append(label)
+    alike = {network for network, labels in networks.items() if len(set(played[labels])) == 1}
+    return {network: labels for network, labels in networks.items() if network in alike and len(labels) > 1}
 
 
 def _spread(values: Sequence[float], metric: Metric) -> str:

@@ -37,12 +37,11 @@ def episodes(reached: set[int], **fields: object) -> list[dict[str, object]]:
 def test_means_are_over_the_trainings_of_one_network(recorded: Recorded, scenario: Scenario) -> None:
     """Two of four episodes are solved by each, three by A*: differences 0, -1/2, -1 and +1/2.
 
-    The interval is that of these and -1 and 1: -1/6 and 1.96 times 0.7454 / sqrt(6) around it. The third training has
-    played one episode only, and does not count yet.
+    The interval is that of these and -1 and 1: -1/6 and 1.96 times 0.7454 / sqrt(6) around it.
     """
     frame = recorded(
         *episodes({0, 1, 2}), *episodes({0, 1}, **FIRST), *episodes({0, 3}, **SECOND, length=6.0, wrong_decisions=1),
-        {"episode": 0, **THIRD}, *episodes({0}, agent="Other, seed 1"),
+        *episodes({0}, agent="Other, seed 1"),
     )  # fmt: skip
     assert rows_of(frame, scenario) == [
         ["short", "Net (x)", "2", "50.0 (50.0 to 50.0)", "1.250 (1.000 to 1.500)", "1.250 (1.000 to 1.500)",
@@ -53,6 +52,13 @@ def test_means_are_over_the_trainings_of_one_network(recorded: Recorded, scenari
 def test_one_training_alone_has_no_mean(recorded: Recorded, scenario: Scenario) -> None:
     """Nor has a network whose other training plays in another variant."""
     assert rows_of(recorded({}, FIRST, {**SECOND, "variant": "long"}), scenario) == []
+
+
+def test_trainings_that_have_not_played_as_much_have_no_mean(recorded: Recorded, scenario: Scenario) -> None:
+    """What the first has lost by then, the others may still lose."""
+    assert rows_of(recorded(*episodes({0}), *episodes({0}, **FIRST), *episodes({0}, **SECOND)), scenario) != []
+    frame = recorded(*episodes({0}), *episodes({0}, **FIRST), *episodes({0}, **SECOND), {"episode": 0, **THIRD})
+    assert rows_of(frame, scenario) == []
 
 
 def test_a_training_that_never_arrives_has_no_length(recorded: Recorded, scenario: Scenario) -> None:
