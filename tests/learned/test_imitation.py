@@ -12,15 +12,13 @@ import torch
 from bench.playing.loop import episode_world
 from bench.reading.scenario import read_scenario
 from learned.encoding import Inputs
+from learned.exploring import Explorer, Noisy, pick
 from learned.imitation import (
-    Explorer,
-    Noisy,
     Student,
     access_weight,
     draw_world,
     imitation_loss,
     part,
-    pick,
     rate,
     rehearse,
 )
