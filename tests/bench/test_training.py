@@ -93,7 +93,7 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     Path("small.yaml").write_text(RECIPE.replace("batch: 2", "batch: two"))
     assert train("small.yaml")[::2] == (
         2,
-        "small.yaml:6:8  batch: got two; expected a whole number of at least 1.\n",
+        "small.yaml:6:8  batch: got two; expected a whole number from 1 to 10000.\n",
     )
 
 

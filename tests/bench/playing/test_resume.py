@@ -23,8 +23,10 @@ RUN = """
 import signal
 import sys
 from pathlib import Path
+from bench.playing import store
 from bench.playing.runner import run
 from bench.reading.scenario import read_scenario
+store.PAUSE = 0.05  # seconds; else a quick machine is killed each time before it has written anything
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the background jobs of a shell are deaf to it
 path = Path(sys.argv[1])
 try:
@@ -49,7 +51,7 @@ class Logged(Settings):
 
     def start(self, task, rng):
         agent = LoggedAgent(task, eager=False)
-        agent.mark = int(rng.integers(2**53))
+        agent.mark = int(rng.integers(2**48)) * 32 + task.budget.steps  # the variants share their luck, not their budget
         with Path(__file__).with_name("log").open("a") as log:
             log.write(f"{agent.mark}\\n")
         time.sleep(0.01)
