@@ -51,7 +51,7 @@ class Logged(Settings):
 
     def start(self, task, rng):
         agent = LoggedAgent(task, eager=False)
-        agent.mark = int(rng.integers(2**48)) * 32 + task.budget.steps  # the variants share their luck, not their budget
+        agent.mark = int(rng.integers(2**48)) * 32 + task.budget.steps  # variants share their luck, not their budget
         with Path(__file__).with_name("log").open("a") as log:
             log.write(f"{agent.mark}\\n")
         time.sleep(0.01)
