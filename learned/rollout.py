@@ -36,7 +36,7 @@ class Moment(NamedTuple):
     scores: Array
     """[b, 4] float32, what the network says of the moves."""
     optimal: Array
-    """[b, 4] bool, the moves that are optimal by what the agent has seen; none where that is undefined."""
+    """[b, 4] bool, the moves that each episode says are optimal; none where that is undefined."""
     open: Array
     """[b, 4] bool, the moves that are not seen to run into an obstacle."""
 
@@ -54,7 +54,7 @@ class Rollout(NamedTuple):
     scores: Tensor
     """[n, 4]"""
     optimal: Tensor
-    """[n, 4] bool, the moves that are optimal by what the agent had seen; none where that is undefined."""
+    """[n, 4] bool, the moves that each episode said were optimal; none where that is undefined."""
     moves: Tensor
     """[n] int64, what was done."""
     reached: Array
@@ -66,7 +66,7 @@ class Rollout(NamedTuple):
         return self.optimal.any(1)
 
     def wrong(self) -> Tensor:
-        """[n] bool, the decisions that no optimal plan on the agent's own known map would take."""
+        """[n] bool, the decisions that are judged, and are none of the optimal moves."""
         right: Tensor = self.optimal.gather(1, self.moves[:, None])[:, 0]
         return self.judged & ~right
 
@@ -154,7 +154,7 @@ class Hindsight(Episode):
         self.distance = distances(world.blocked, world.task.goal, (-1, -1))  # [H, W], on the full map
 
     def look(self) -> Array:
-        """As any episode does."""
+        """Sense, and write what is seen into the known map: which moves count, [4] bool."""
         optimal = super().look()
         task, place = self.world.task, self.observation.place
         best: Array = optimal & nearer(self.world.blocked, self.distance, place, task.goal)
