@@ -21,7 +21,7 @@ from bench.reporting.report import READS, print_tables, summary, write_report
 from bench.reporting.sections import comparisons
 from bench.reporting.tables import markdown, print_table
 from worlds.files import put
-from worlds.mistake import Mistake, meant, near, one_of
+from worlds.mistake import Mistake, unknown
 from worlds.types import MapError, Outcome
 
 Answer = TypeVar("Answer")
@@ -66,8 +66,7 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
 def _against(scenario: Scenario, label: str) -> Scenario:
     labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
     if label not in labels:
-        expected = f"{one_of(labels)}.{meant(near(label, labels))}"
-        raise Mistake(f"--against, {scenario.path}: got {label}; expected {expected}")
+        raise unknown(f"--against, {scenario.path}", label, labels)
     having = [variant for variant in scenario.variants if any(entry.label == label for entry in variant.agents)]
     return replace(scenario, variants=tuple(replace(variant, reference=label) for variant in having))
 

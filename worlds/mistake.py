@@ -30,3 +30,9 @@ def one_of(names: Iterable[str]) -> str:
 def meant(name: str) -> str:
     """The end of a text that proposes a name; empty without one."""
     return f" Did you mean {name}?" if name else ""
+
+
+def unknown(place: str, got: str, names: Iterable[str]) -> Mistake:
+    """Something got none of the names that it could have."""
+    names = list(names)
+    return Mistake(f"{place}: got {got}; expected {one_of(names)}.{meant(near(got, names))}")

@@ -1,6 +1,5 @@
 """What the options of a command choose: a variant of a scenario, and what is recorded of an agent in it."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +7,7 @@ import pandas as pd
 
 from bench.playing import store
 from bench.reading.scenario import Scenario, Variant
-from worlds.mistake import Mistake, meant, near, one_of
+from worlds.mistake import Mistake, unknown
 
 READS = ("variant", "agent", "episode", "outcome", "steps", "length", "shortest", "actions", "detail")
 """The columns of `bench.playing.episode.Episode` that a replay needs."""
@@ -25,7 +24,7 @@ def chosen_variant(scenario: Scenario, name: str | None) -> Variant:
     for variant in scenario.variants:
         if name in (None, variant.name):
             return variant
-    raise _unknown("--variant", str(name), (each.name for each in scenario.variants))
+    raise unknown("--variant", str(name), (each.name for each in scenario.variants))
 
 
 def chosen_rows(scenario: Scenario, variant: Variant, agent: str, folder: Path) -> pd.DataFrame:
@@ -46,7 +45,7 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
         return {str(name): value for name, value in found.iloc[0].items()}
     labels = [entry.label for entry in variant.agents if not entry.skipped]
     if agent not in labels:
-        raise _unknown("--agent", agent, labels)
+        raise unknown("--agent", agent, labels)
     count = store.stale(folder, scenario).get((variant.name, agent))
     lacking = (
         f"--episode: got {episode}; expected one of the {len(rows)} that are recorded of {agent} in {variant.name}."
@@ -54,9 +53,3 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
         else f"{folder}: got no episode of {agent} in {variant.name}; expected some, as `fogbench run` records them."
     )
     raise Mistake(lacking + (f" {store.STALE.format(count=count, agent=agent, variant=variant.name)}" if count else ""))
-
-
-def _unknown(option: str, got: str, names: Iterable[str]) -> Mistake:
-    """An option that got none of the names it could have."""
-    names = list(names)
-    return Mistake(f"{option}: got {got}; expected {one_of(names)}.{meant(near(got, names))}")
