@@ -54,7 +54,7 @@ def run(
 
     Exit code 0: done. 1: finished, but an agent crashed or hung. 2: the command or a file was wrong.
     """
-    from bench.session import run_all
+    from fogbench.bench.session import run_all
 
     try:
         crashed = run_all(_scenarios(scenarios), episodes, workers, results)
@@ -67,7 +67,7 @@ def run(
 @app.command()
 def check(scenarios: Paths = None) -> None:
     """Read scenario files, report every mistake with its place, and say what a run would play."""
-    from bench.session import check_all
+    from fogbench.bench.session import check_all
 
     check_all(_scenarios(scenarios))
 
@@ -75,7 +75,7 @@ def check(scenarios: Paths = None) -> None:
 @app.command("list")
 def list_() -> None:
     """List the scenarios, map families and agents that are at hand, with a sentence on each."""
-    from bench.listing import show
+    from fogbench.bench.listing import show
 
     show()
 
@@ -85,7 +85,7 @@ def schema() -> None:
     """Print the JSON Schema of scenario files, for completion and checks in editors."""
     import json
 
-    from bench.reading.schema import schema as scenario_schema
+    from fogbench.bench.reading.schema import schema as scenario_schema
 
     typer.echo(json.dumps(scenario_schema(), indent=2))
 
@@ -100,7 +100,7 @@ def report(
     results: Results = Path("results"),
 ) -> None:
     """Print and write the tables and plots of what is recorded; nothing is run."""
-    from bench.session import compare_all, report_all
+    from fogbench.bench.session import compare_all, report_all
 
     if against is None:
         report_all(_scenarios(scenarios), results)
@@ -121,8 +121,8 @@ def replay(
 
     Drawn are the truth, what the agent had seen by then, its current view, and its path.
     """
-    from bench.playback import replay_recorded
-    from bench.session import read_all
+    from fogbench.bench.playback import replay_recorded
+    from fogbench.bench.session import read_all
 
     (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
     typer.echo(replay_recorded(chosen, variant, agent, episode, results / chosen.name, out))
@@ -145,8 +145,8 @@ def look(
     `memory-VARIANT-AGENT.png`: what its memory holds, step by step, in one episode; in a tunnel with the steps at
     which the agent first sees the end wall, turns back, and is out.
     """
-    from bench.look import look_inside
-    from bench.session import read_all
+    from fogbench.bench.look import look_inside
+    from fogbench.bench.session import read_all
 
     (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
     typer.echo(look_inside(chosen, variant, agent, episode, results / chosen.name))
@@ -177,7 +177,7 @@ def train(
     `learning.png` the curves. The best weights so far are `NAME.safetensors`, with a card beside them that says where
     they come from; a scenario plays them as `macn: {checkpoint: ./NAME.safetensors}`.
     """
-    from bench.training import train_recipe
+    from fogbench.bench.training import train_recipe
 
     try:
         train_recipe(recipe, device.value, out, batches, seed)
@@ -189,20 +189,20 @@ def train(
 @app.command()
 def doctor() -> None:
     """Compile all kernels; say what is installed, what is missing and how to get it, and how fast this machine is."""
-    from bench.doctor import examine
+    from fogbench.bench.doctor import examine
 
     examine()
 
 
 def _scenarios(names: list[str] | None) -> list[Path]:
-    from bench.shipped import find
+    from fogbench.bench.shipped import find
 
     return find(names)
 
 
 def main() -> None:
     """Run the command line; every mistake of a user ends in lines of text and exit code 2, never in a traceback."""
-    from worlds.mistake import Mistake
+    from fogbench.worlds.mistake import Mistake
 
     try:
         app()

@@ -16,12 +16,12 @@ from rich.console import Console
 from rich.table import Column, Table
 from threadpoolctl import threadpool_info
 
-from bench.playing.loop import play
-from bench.reading.scenario import read_scenario
-from learned import LEARNED
-from planners import PLANNERS
-from planners.astar import search
-from worlds.kernel import kept
+from fogbench.bench.playing.loop import play
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.learned import LEARNED
+from fogbench.planners import PLANNERS
+from fogbench.planners.astar import search
+from fogbench.worlds.kernel import kept
 
 PROJECT = "fogbench"
 
@@ -127,9 +127,9 @@ def _learned() -> dict[str, str]:
         import torch  # noqa: PLC0415  an extra
     except ModuleNotFoundError:
         return {}
-    from learned.dnc import DNC  # noqa: PLC0415  it needs the extra
-    from learned.dnc_access import Heads  # noqa: PLC0415  likewise
-    from learned.value_iteration import ValueIteration  # noqa: PLC0415  likewise
+    from fogbench.learned.dnc.access import Heads  # noqa: PLC0415  likewise
+    from fogbench.learned.dnc.dnc import DNC  # noqa: PLC0415  it needs the extra
+    from fogbench.learned.value_iteration.value_iteration import ValueIteration  # noqa: PLC0415  likewise
 
     return {
         "value iteration, 128 maps of 16x16, 20 times": _both_ways(ValueIteration(2, 20), torch.rand(128, 2, 16, 16)),

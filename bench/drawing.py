@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bench.playing.replay import Moment
-from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell
+from fogbench.bench.playing.replay import Moment
+from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell
 
 COLOURS = np.array([[150, 150, 150], [255, 255, 255], [30, 30, 30]], np.uint8)  # [3, RGB]: unknown, free, blocked
 VIEW, PATH, AGENT, GOAL = (86, 180, 233), (0, 114, 178), (213, 94, 0), (0, 158, 115)

@@ -5,8 +5,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from bench.reading.tables import agents, families, first_sentence
-from bench.shipped import find, folder
+from fogbench.bench.reading.tables import agents, families, first_sentence
+from fogbench.bench.shipped import find, folder
 
 
 def show() -> None:

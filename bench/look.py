@@ -11,21 +11,21 @@ from rich.console import Console
 from rich.progress import track
 from threadpoolctl import threadpool_limits
 
-from bench.playing.chosen import chosen_row, chosen_rows, chosen_variant
-from bench.playing.loop import episode_stream, episode_world
-from bench.playing.milestones import milestones
-from bench.playing.replay import Moment, retrace
-from bench.reading.scenario import Entry, Scenario, Variant
-from bench.reading.tables import NETWORK
-from bench.reporting.activations import activations, table
-from bench.reporting.spaces import Decisions, embedded, spaces
-from bench.reporting.tables import markdown
-from planners.optimal import OptimalMoves
-from worlds.mistake import Mistake, meant, near
-from worlds.types import Move
+from fogbench.bench.playing.loop import episode_stream, episode_world
+from fogbench.bench.playing.milestones import milestones
+from fogbench.bench.playing.replay import Moment, retrace
+from fogbench.bench.playing.selection import chosen_row, chosen_rows, chosen_variant
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.reading.tables import NETWORK
+from fogbench.bench.reporting.activations import activations, table
+from fogbench.bench.reporting.spaces import Decisions, embedded, spaces
+from fogbench.bench.reporting.tables import markdown
+from fogbench.planners.optimal import OptimalMoves
+from fogbench.worlds.mistake import Mistake, meant, near
+from fogbench.worlds.types import Move
 
 if TYPE_CHECKING:
-    from learned.glimpse import Glimpse
+    from fogbench.learned.glimpse import Glimpse
 
 Item = TypeVar("Item")
 
@@ -74,7 +74,7 @@ def _network(variant: Variant, label: str) -> Entry:
 
 def _watch(variant: Variant, entry: Entry, row: Mapping[str, Any]) -> Iterator[tuple[Moment, "Glimpse"]]:
     """The moments of a recorded episode with the decision that is taken at each; what it holds is overwritten."""
-    from learned.glimpse import glimpse  # noqa: PLC0415  it loads PyTorch, which a wrong option need not
+    from fogbench.learned.glimpse import glimpse  # noqa: PLC0415  it loads PyTorch, which a wrong option need not
 
     assert entry.settings is not None
     episode, actions = int(row["episode"]), row["actions"]

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.drawing import film, known, strip, truth
-from bench.playing.chosen import chosen_row, chosen_variant
-from bench.playing.replay import End, Moment, retrace, verify
-from bench.reading.scenario import Scenario
-from worlds.mistake import Mistake
-from worlds.types import Array, Outcome
+from fogbench.bench.drawing import film, known, strip, truth
+from fogbench.bench.playing.replay import End, Moment, retrace, verify
+from fogbench.bench.playing.selection import chosen_row, chosen_variant
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Array, Outcome
 
 PANELS, FRAMES = 5, 300
 """Moments in a strip, and the most in a film."""

@@ -7,8 +7,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.progress import TimeRemainingColumn as Eta
 
-from bench.playing import runner
-from worlds.types import Outcome
+from fogbench.bench.playing import runner
+from fogbench.worlds.types import Outcome
 
 
 class Bars:

@@ -11,18 +11,18 @@ from typing import TypeVar
 from rich.console import Console
 from rich.text import Text
 
-from bench.playing import store
-from bench.playing.pool import cpus
-from bench.playing.provenance import read_run
-from bench.playing.runner import Summary, run
-from bench.progress import Bars
-from bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario, text_of
-from bench.reporting.report import READS, print_tables, summary, write_report
-from bench.reporting.sections import comparisons
-from bench.reporting.tables import markdown, print_table
-from worlds.files import put
-from worlds.mistake import Mistake, unknown
-from worlds.types import MapError, Outcome
+from fogbench.bench.playing import store
+from fogbench.bench.playing.pool import cpus
+from fogbench.bench.playing.provenance import read_run
+from fogbench.bench.playing.runner import Summary, run
+from fogbench.bench.progress import Bars
+from fogbench.bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario, text_of
+from fogbench.bench.reporting.report import READS, print_tables, summary, write_report
+from fogbench.bench.reporting.sections import comparisons
+from fogbench.bench.reporting.tables import markdown, print_table
+from fogbench.worlds.files import put
+from fogbench.worlds.mistake import Mistake, unknown
+from fogbench.worlds.types import MapError, Outcome
 
 Answer = TypeVar("Answer")
 
@@ -152,7 +152,7 @@ def _refuse_too_many(scenario: Scenario) -> None:
 
 
 def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
-    from bench.playing.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
+    from fogbench.bench.playing.loop import episode_world  # noqa: PLC0415  it loads Numba, which only a check needs here
 
     try:
         world = episode_world(variant, 0)

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-import learned
-from worlds.mistake import Mistake, meant, near, one_of
+from fogbench import learned
+from fogbench.worlds.mistake import Mistake, meant, near, one_of
 
 RECIPES = Path(learned.__file__).with_name("recipes")
 """Where the recipes are that go by a name alone."""
@@ -11,9 +11,7 @@ RECIPES = Path(learned.__file__).with_name("recipes")
 
 def folder() -> Path:
     """The folder of the shipped scenarios, installed or in a checkout."""
-    here = Path(__file__).parent
-    installed = here / "scenarios"
-    return installed if installed.is_dir() else here.parent / "scenarios"
+    return Path(__file__).parents[1] / "scenarios"
 
 
 def find(names: list[str] | None) -> list[Path]:

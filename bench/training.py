@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from bench.playing.provenance import circumstances
-from bench.reading.recipe import read_recipe
-from bench.reading.scenario import text_of
-from bench.reporting.learning import write_curves
-from bench.shipped import find_recipe
-from learned.recipe import Recipe
-from worlds.files import alone
-from worlds.mistake import Mistake
+from fogbench.bench.playing.provenance import circumstances
+from fogbench.bench.reading.recipe import read_recipe
+from fogbench.bench.reading.scenario import text_of
+from fogbench.bench.reporting.learning import write_curves
+from fogbench.bench.shipped import find_recipe
+from fogbench.learned.training.recipe import Recipe
+from fogbench.worlds.files import alone
+from fogbench.worlds.mistake import Mistake
 
 if TYPE_CHECKING:
-    from learned.training import Course, Trial
+    from fogbench.learned.training.course import Course, Trial
 
 TRAININGS = Path("results/training")
 """Where trainings are kept."""
@@ -39,7 +39,7 @@ def train_recipe(said: str, device: str, out: Path | None, batches: int | None, 
     """
     path = find_recipe(said)
     recipe = _changed(read_recipe(text_of(path), path), device, batches, seed)
-    from learned.training import Course  # noqa: PLC0415  it loads PyTorch, which a broken recipe need not
+    from fogbench.learned.training.course import Course  # noqa: PLC0415  it loads PyTorch, which a broken recipe need not
 
     folder, console = out or TRAININGS / recipe.name, Console()
     with alone(folder, "training"):

@@ -1,9 +1,9 @@
 """Learned policies, by the name they have in a scenario. Importing this imports none of them."""
 
 LEARNED = {
-    "macn": "learned.macn:Macn",
-    "vin": "learned.vin:Vin",
-    "cnn_memory": "learned.cnn_memory:CnnMemory",
+    "macn": "fogbench.learned.macn:Macn",
+    "vin": "fogbench.learned.vin:Vin",
+    "cnn_memory": "fogbench.learned.cnn_memory:CnnMemory",
 }
 """Policies that ship with the project, as `module:class`."""
 

@@ -11,8 +11,8 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor, nn
 
-from worlds.files import put, sha256
-from worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.files import put, sha256
+from fogbench.worlds.mistake import Mistake, near, one_of
 
 SHIPPED = Path(__file__).with_name("checkpoints")
 """Where the checkpoints are that go by a name alone."""

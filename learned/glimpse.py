@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import torch
 
-from learned.dnc import DNCState
-from learned.memory import LSTMState
-from learned.policy import PolicyAgent
-from worlds.types import Array, Move, Observation
+from fogbench.learned.dnc.dnc import DNCState
+from fogbench.learned.memory import LSTMState
+from fogbench.learned.policy import PolicyAgent
+from fogbench.worlds.types import Array, Move, Observation
 
 
 class Glimpse(NamedTuple):

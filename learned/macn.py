@@ -7,11 +7,11 @@ where they are higher; with them comes Q at the agent's cell.
 import torch
 from torch import Tensor
 
-from learned.encoding import Inputs
-from learned.macn_single import Weights, see
-from learned.memory import Remembering, RememberingNetwork
-from learned.value_iteration import ACTIONS
-from learned.vin import Planning
+from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.macn_single import Weights, see
+from fogbench.learned.memory import Remembering, RememberingNetwork
+from fogbench.learned.value_iteration.value_iteration import ACTIONS
+from fogbench.learned.vin import Planning
 
 
 class Macn(Planning, Remembering):

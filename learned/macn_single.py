@@ -14,14 +14,14 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
-from learned.encoding import CHANNELS, COMPASS, SEEN, Inputs
-from learned.lanes import NUMBERS
-from learned.linear import apply
-from learned.native import job, matrix, pointer, run, vector
-from learned.value_iteration_forward import correlate, forward_block
-from learned.value_iteration_planes import pack, plane_size, planes, unpack
-from worlds.kernel import callback, kernel
-from worlds.types import Array
+from fogbench.learned.encoding.grid import CHANNELS, COMPASS, SEEN, Inputs
+from fogbench.learned.kernels.lanes import NUMBERS
+from fogbench.learned.kernels.linear import apply
+from fogbench.learned.kernels.native import job, matrix, pointer, run, vector
+from fogbench.learned.value_iteration.forward import correlate, forward_block
+from fogbench.learned.value_iteration.planes import pack, plane_size, planes, unpack
+from fogbench.worlds.kernel import callback, kernel
+from fogbench.worlds.types import Array
 
 JOB = job(
     "height", "width", "iterations", "features", "image", "cell", "sight", "compass",

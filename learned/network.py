@@ -5,8 +5,8 @@ from typing import Any, Protocol, runtime_checkable
 
 from torch import Tensor, nn
 
-from learned.encoding import Inputs
-from worlds.mistake import Mistake
+from fogbench.learned.encoding.grid import Inputs
+from fogbench.worlds.mistake import Mistake
 
 
 @runtime_checkable

@@ -1,7 +1,7 @@
 """What all learned policies share: settings that find their weights, and the decisions of one episode.
 
 A setting that a scenario does not give is as in the checkpoint's card; one that it does give must be as in the card,
-unless no weight depends on it (`learned.checkpoint.WEIGHTLESS`).
+unless no weight depends on it (`fogbench.learned.checkpoint.WEIGHTLESS`).
 """
 
 from functools import lru_cache
@@ -19,14 +19,14 @@ from pydantic import (
 )
 from torch import Tensor
 
-from learned import checkpoint
-from learned.checkpoint import NONE
-from learned.encoding import STILL, Frame, Inputs, encode, gather
-from learned.network import Network, settled, tensors
-from worlds.belief import KnownMap
-from worlds.mistake import Mistake
-from worlds.settings import Settings, whole
-from worlds.types import Cell, Move, Observation, Task
+from fogbench.learned import checkpoint
+from fogbench.learned.checkpoint import NONE
+from fogbench.learned.encoding.grid import STILL, Frame, Inputs, encode, gather
+from fogbench.learned.network import Network, settled, tensors
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.settings import Settings, whole
+from fogbench.worlds.types import Cell, Move, Observation, Task
 
 Size = Annotated[int, Field(ge=1, le=1024)]
 """Of a part of a network."""

@@ -8,11 +8,11 @@ from typing import Annotated, cast
 from pydantic import Field
 from torch import Tensor, nn
 
-from learned.encoding import CHANNELS, Inputs
-from learned.network import Network
-from learned.policy import Policy
-from learned.value_iteration import ACTIONS, ValueIteration
-from worlds.settings import Probability
+from fogbench.learned.encoding.grid import CHANNELS, Inputs
+from fogbench.learned.network import Network
+from fogbench.learned.policy import Policy
+from fogbench.learned.value_iteration.value_iteration import ACTIONS, ValueIteration
+from fogbench.worlds.settings import Probability
 
 
 class Planning(Policy):

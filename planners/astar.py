@@ -8,12 +8,12 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from planners.route import Route
-from worlds.belief import KnownMap, fuse
-from worlds.distances import FAR
-from worlds.kernel import kernel
-from worlds.settings import Settings
-from worlds.types import BLOCKED, DELTAS, Array, Cell, Move, Observation, Task
+from fogbench.planners.route import Route
+from fogbench.worlds.kernel import kernel
+from fogbench.worlds.maps.cells import KnownMap, fuse
+from fogbench.worlds.maps.distances import FAR
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move, Observation, Task
 
 STEPS = np.array(DELTAS, np.int64)  # [4, 2]
 

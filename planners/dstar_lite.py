@@ -4,12 +4,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from planners.astar import glance
-from planners.incremental import EMPTY, descend, replan
-from worlds.belief import KnownMap
-from worlds.distances import FAR
-from worlds.settings import Settings
-from worlds.types import Array, Cell, Move, Observation, Task
+from fogbench.planners.astar import glance
+from fogbench.planners.incremental import EMPTY, descend, replan
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.maps.distances import FAR
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import Array, Cell, Move, Observation, Task
 
 
 class DStarLite(Settings):
@@ -28,7 +28,7 @@ class DStarLite(Settings):
 
 
 class DStarLiteAgent:
-    """One episode of incremental search; `planners.incremental` explains its letters and the word `optimist`."""
+    """One episode of incremental search; the file `incremental` explains its letters and the word `optimist`."""
 
     def __init__(self, task: Task, *, optimist: bool) -> None:
         """Plan towards the task's goal."""

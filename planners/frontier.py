@@ -4,16 +4,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from planners.dstar_lite import DStarLiteAgent
-from worlds.settings import Settings
-from worlds.types import Task
+from fogbench.planners.dstar_lite import DStarLiteAgent
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import Task
 
 
 class Frontier(Settings):
     """Walks through known free cells to the frontier cell with the least path cost plus Manhattan distance to the goal.
 
     A frontier cell is known to be free and has an unknown neighbour. Once the goal is known to be free, it competes at
-    its path cost. The searches are those of D* Lite, on the graph that `planners.incremental` calls not optimist.
+    its path cost. The searches are those of D* Lite, on the graph that the file `incremental` calls not optimist.
     """
 
     kinds: ClassVar[frozenset[str]] = frozenset({"grid"})

@@ -20,9 +20,9 @@ Words used here (the paper's)
 
 import numpy as np
 
-from worlds.distances import FAR
-from worlds.kernel import kernel
-from worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell
+from fogbench.worlds.kernel import kernel
+from fogbench.worlds.maps.distances import FAR
+from fogbench.worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell
 
 EMPTY = 64  # rows of a new U
 STAR = ((0, 0), *DELTAS)  # a cell and its neighbours

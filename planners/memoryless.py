@@ -4,9 +4,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from planners.astar import glance
-from worlds.settings import Settings
-from worlds.types import Cell, Move, Observation, Task
+from fogbench.planners.astar import glance
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import Cell, Move, Observation, Task
 
 
 class Memoryless(Settings):

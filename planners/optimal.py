@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from worlds.distances import FAR, distances
-from worlds.kernel import kernel
-from worlds.types import BLOCKED, DELTAS, Array, Cell, Task
+from fogbench.worlds.kernel import kernel
+from fogbench.worlds.maps.distances import FAR, distances
+from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Task
 
 
 class OptimalMoves:
@@ -56,7 +56,7 @@ def nearer(blocked: Array, distance: Array, place: Cell, goal: Cell) -> Array:
 
     Args:
         blocked: [H, W] bool.
-        distance: [H, W] int32 from the goal, as `worlds.distances.distances` tells it.
+        distance: [H, W] int32 from the goal, as `fogbench.worlds.maps.distances.distances` tells it.
         place: where the agent is.
         goal: where it should be.
     """

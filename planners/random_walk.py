@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from worlds.settings import Settings
-from worlds.types import BLOCKED, DELTAS, Move, Observation, Task
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import BLOCKED, DELTAS, Move, Observation, Task
 
 MOVES = tuple(zip(Move, DELTAS, strict=True))
 

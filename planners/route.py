@@ -1,7 +1,7 @@
 """A path of cells that an agent follows, step by step, until something cuts it."""
 
-from worlds.kernel import kernel
-from worlds.types import BLOCKED, DELTAS, Array, Cell, Move
+from fogbench.worlds.kernel import kernel
+from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move
 
 MOVES = tuple(Move)
 

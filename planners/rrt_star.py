@@ -2,7 +2,7 @@
 
 Words used here
     state      a point (row, column) of the plane, in cells; the centre of a cell is its own row and column
-    motion     the straight line between two states, see `planners.segment`
+    motion     the straight line between two states, see `fogbench.planners.segment`
     iteration  one pass of a planner's loop: it asks its termination condition once
 """
 
@@ -12,12 +12,12 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from ompl import base, geometric, util
 
-from planners.astar import glance
-from planners.route import Route
-from planners.segment import PARTS, clear, walk
-from worlds.belief import KnownMap
-from worlds.settings import Positive, Settings
-from worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
+from fogbench.planners.astar import glance
+from fogbench.planners.route import Route
+from fogbench.planners.segment import PARTS, clear, walk
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.settings import Positive, Settings
+from fogbench.worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
 
 SEEDS = 2**31
 """OMPL's seeds are the whole numbers from 1 to this."""

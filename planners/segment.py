@@ -10,8 +10,8 @@ cell is a middle, and no middle lies on a border of cells. A motion leaves a cel
 
 import numpy as np
 
-from worlds.kernel import kernel
-from worlds.types import BLOCKED, Array
+from fogbench.worlds.kernel import kernel
+from fogbench.worlds.types import BLOCKED, Array
 
 PARTS = 2**16 + 1
 """Parts along the side of a cell; the products below stay inside 64 bits on maps of up to 2**14 cells a side."""

@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from worlds.conditions import BudgetSettings
-from worlds.distances import distances
-from worlds.grid import GridConditions, GridRules, GridWorld, SquareView, manhattan
-from worlds.settings import Settings
-from worlds.types import Array, Cell, Task
+from fogbench.worlds.conditions import BudgetSettings
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.rules import GridRules, SquareView
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import manhattan
+from fogbench.worlds.maps.distances import distances
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import Array, Cell, Task
 
 settings.register_profile("fogbench", derandomize=True, deadline=None, database=None)
 settings.load_profile("fogbench")

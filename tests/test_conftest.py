@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import worlds
+import fogbench
 
 SUITE = """
 import pytest
@@ -33,7 +33,7 @@ def outcome(folder: Path, text: str, **environment: str) -> tuple[int, str]:
     (folder / "test_file.py").write_text(text)
     (folder / "pytest.ini").write_text("[pytest]\nmarkers = maps\n")
     kept = {name: value for name, value in os.environ.items() if name != "FOGBENCH_MAPS"}
-    place = str(Path(worlds.__file__).parents[1])
+    place = str(Path(fogbench.__file__).parents[1])
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", str(folder)]
     settings = {**kept, "PYTHONPATH": place, **environment}
     run = subprocess.run(command, check=False, env=settings, cwd=folder, capture_output=True, text=True)

@@ -8,12 +8,11 @@ from pkgutil import resolve_name
 
 import pytest
 
-import learned
-import planners
-import worlds
-from learned import LEARNED
-from planners import PLANNERS
-from worlds import FAMILIES, KINDS
+import fogbench
+from fogbench import learned, planners
+from fogbench.learned import LEARNED
+from fogbench.planners import PLANNERS
+from fogbench.worlds import FAMILIES, KINDS
 
 HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib", "sklearn"}
 
@@ -23,7 +22,7 @@ TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **KINDS}
 def loaded(code: str) -> set[str]:
     """The modules that are loaded after some code has run in a process of its own."""
     report = f"{code}\nimport sys\nprint('\\nLOADED', *sys.modules)"
-    environment = {**os.environ, "PYTHONPATH": str(Path(worlds.__file__).parents[1])}
+    environment = {**os.environ, "PYTHONPATH": str(Path(fogbench.__file__).parents[1])}
     text = subprocess.check_output([sys.executable, "-c", report], env=environment, text=True)
     return set(text.rpartition("LOADED")[2].split())
 
@@ -32,7 +31,7 @@ def told(*arguments: str) -> str:
     """Code that runs the command line to its end."""
     return (
         f"import sys; sys.argv = {['fogbench', *arguments]}\n"
-        "from bench.command import main\n"
+        "from fogbench.bench.command import main\n"
         "try:\n    main()\n"
         "except SystemExit as end:\n    assert not end.code, end.code"
     )
@@ -40,13 +39,13 @@ def told(*arguments: str) -> str:
 
 def test_heavy_packages_would_be_noticed() -> None:
     """A module that needs Numba shows up in what is loaded."""
-    assert "numba" in loaded("import worlds.kernel")
+    assert "numba" in loaded("import fogbench.worlds.kernel")
 
 
 @pytest.mark.parametrize(
     "code",
     [
-        "import bench.command",
+        "import fogbench.bench.command",
         told("--help"),
         told("list"),
         told("run", "--help"),
@@ -63,7 +62,7 @@ def test_the_command_line_loads_nothing_heavy(code: str) -> None:
 def test_tables_load_none_of_their_entries() -> None:
     """Importing the packages with the tables imports no module that the tables name."""
     modules = {target.partition(":")[0] for target in TARGETS.values()}
-    assert not modules & loaded("import worlds, planners, learned")
+    assert not modules & loaded("import fogbench.worlds, planners, learned")
 
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)

@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
 
-from worlds.settings import Positive, PositiveRange, Settings
-from worlds.types import Budget
+from fogbench.worlds.settings import Positive, PositiveRange, Settings
+from fogbench.worlds.types import Budget
 
 
 class PerDistance(Settings):

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from worlds.mistake import Mistake
-from worlds.types import MapError
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import MapError
 
 
 def read(path: Path) -> bytes:

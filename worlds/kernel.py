@@ -27,7 +27,7 @@ from numba.core.ccallback import CFunc
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from worlds.streams import digest
+from fogbench.worlds.streams import digest
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -79,7 +79,7 @@ def _compile(function: F, **options: Any) -> F:
 
 
 def _sources() -> str:
-    files = sorted(file for name in ("worlds", "planners", "learned") for file in HERE.with_name(name).glob("*.py"))
+    files = sorted(file for name in ("worlds", "planners", "learned") for file in HERE.with_name(name).rglob("*.py"))
     return digest(numba.__version__, sys.version, *(file.read_text("utf-8") for file in files))[:16]
 
 

@@ -17,7 +17,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from worlds.mistake import Mistake
+from fogbench.worlds.mistake import Mistake
 
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 """The three values of a cell in a view and in a known map."""
@@ -74,7 +74,7 @@ class Task(NamedTuple):
     goal: Any
     """A place of that kind (robot: `(x, y)` [m])."""
     sensor: Any
-    """The settings of the sensor, for example `worlds.grid.SquareView`."""
+    """The settings of the sensor, for example `fogbench.worlds.grid.rules.SquareView`."""
     budget: Budget
     extent: tuple[float, ...]
     """How large the map is: grid `(H, W)` [cells], graph `(N,)`, robot `(width, height)` [m]."""
@@ -160,17 +160,17 @@ class World(Protocol):
 
 
 COVARIATES = ("density", "detour", "dead_ends", "openness")
-"""What `World.covariates` tells; see `worlds.covariates`."""
+"""What `World.covariates` tells; see `fogbench.worlds.maps.covariates`."""
 
 
 class MapFamily(Protocol):
     """**Protocol:** the frozen settings of a family of maps; its fields are its block under `maps:`."""
 
     kind: ClassVar[str]
-    """The kind of its worlds, a name of `worlds.KINDS`."""
+    """The kind of its worlds, a name of `fogbench.worlds.KINDS`."""
 
     def sample(self, rng: np.random.Generator, episode: int, conditions: Any) -> World:
-        """The world of an episode under `conditions` (an object of the class that `worlds.KINDS` names).
+        """The world of an episode under `conditions` (an object of the class that `fogbench.worlds.KINDS` names).
 
         Args:
             rng: all the luck of this map and task.

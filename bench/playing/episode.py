@@ -20,7 +20,7 @@ class Episode:
     """The agent's label in the scenario."""
     episode: int
     outcome: str
-    """The name of a `worlds.types.Outcome`."""
+    """The name of a `fogbench.worlds.types.Outcome`."""
     steps: int
     """Decisions that were carried out."""
     budget_steps: int

@@ -1,8 +1,8 @@
 """Was a decision right, by what the agent itself had seen? Computed beside the loop, never timed."""
 
-from planners.astar import AStarAgent
-from planners.optimal import OptimalMoves
-from worlds.types import Move, Observation, Task
+from fogbench.planners.astar import AStarAgent
+from fogbench.planners.optimal import OptimalMoves
+from fogbench.worlds.types import Move, Observation, Task
 
 
 class GridJudge:

@@ -5,11 +5,10 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-import planners
-import worlds
-from bench.reading.scenario import Entry, Variant
-from worlds.settings import Settings
-from worlds.streams import digest
+from fogbench import planners, worlds
+from fogbench.bench.reading.scenario import Entry, Variant
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.streams import digest
 
 DECIDE = ("judge.py", "loop.py")
 """Files of the harness that decide what an episode is."""

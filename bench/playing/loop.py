@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from bench.playing.episode import Episode
-from bench.playing.judge import GridJudge
-from bench.playing.keys import agent_key, world_key
-from bench.reading.scenario import Entry, Scenario, Variant
-from bench.reading.tables import AGENT
-from planners.astar import AStar
-from worlds.mistake import Mistake
-from worlds.streams import stream
-from worlds.types import Agent, AgentSettings, Outcome, World
+from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.judge import GridJudge
+from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.reading.tables import AGENT
+from fogbench.planners.astar import AStar
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.streams import stream
+from fogbench.worlds.types import Agent, AgentSettings, Outcome, World
 
 TOLD = 300
 """Characters of an agent's error that a row holds at most."""

@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import binary_opening
 
-from worlds.grid import GridWorld
-from worlds.tunnel import Tunnel
-from worlds.types import Array, Cell, MapFamily
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.types import Array, Cell, MapFamily
 
 
 def milestones(family: MapFamily, world: GridWorld, path: Sequence[Cell]) -> dict[str, int]:

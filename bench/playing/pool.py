@@ -10,8 +10,8 @@ from time import sleep
 
 from pebble import ProcessPool
 
-from bench.playing.offspring import begin
-from bench.reading.scenario import Scenario
+from fogbench.bench.playing.parent_death import begin
+from fogbench.bench.reading.scenario import Scenario
 
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS", "NUMBA_NUM_THREADS"), "1"

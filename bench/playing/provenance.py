@@ -15,9 +15,9 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from bench.playing.store import StoreError, put
-from bench.reading.scenario import Scenario
-from worlds.mistake import Mistake
+from fogbench.bench.playing.store import StoreError, put
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.mistake import Mistake
 
 PACKAGES = (
     "fogbench",

@@ -3,12 +3,12 @@
 from collections.abc import Generator, Mapping
 from typing import Any, NamedTuple
 
-from bench.playing.loop import episode_stream, episode_world
-from bench.reading.scenario import Variant
-from worlds.belief import KnownMap
-from worlds.grid import GridWorld
-from worlds.mistake import Mistake
-from worlds.types import Array, Cell, Move, Observation, Outcome
+from fogbench.bench.playing.loop import episode_stream, episode_world
+from fogbench.bench.reading.scenario import Variant
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Array, Cell, Move, Observation, Outcome
 
 
 class Moment(NamedTuple):

@@ -16,14 +16,14 @@ from typing import NamedTuple
 
 from pebble import ProcessExpired
 
-from bench.playing import worker
-from bench.playing.episode import Episode
-from bench.playing.pool import worker_pool
-from bench.playing.provenance import noted
-from bench.playing.store import recorded, recording
-from bench.reading.scenario import Scenario
-from worlds.mistake import Mistake
-from worlds.types import MapError, Outcome
+from fogbench.bench.playing import worker
+from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.pool import worker_pool
+from fogbench.bench.playing.provenance import noted
+from fogbench.bench.playing.store import recorded, recording
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import MapError, Outcome
 
 AHEAD = 4
 """Tasks that are handed out for each worker, so that none waits for its next."""

@@ -13,11 +13,11 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bench.playing.episode import SCHEMA, Episode
-from bench.playing.keys import agent_key, world_key
-from bench.reading.scenario import Scenario
-from worlds import files
-from worlds.mistake import Mistake
+from fogbench.bench.playing.episode import SCHEMA, Episode
+from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds import files
+from fogbench.worlds.mistake import Mistake
 
 WHO = ["variant", "agent", "episode"]
 """The columns that tell one row of a scenario from another."""

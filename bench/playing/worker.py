@@ -8,10 +8,10 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from bench.playing import loop
-from bench.playing.episode import Episode
-from bench.reading.scenario import Entry, Scenario, Variant, read_scenario
-from worlds.types import Outcome
+from fogbench.bench.playing import loop
+from fogbench.bench.playing.episode import Episode
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant, read_scenario
+from fogbench.worlds.types import Outcome
 
 _TOLD: ContextVar[tuple[str, Path, int]] = ContextVar("_TOLD")
 """What `begin` was told."""
@@ -34,12 +34,12 @@ def begin(text: str, path: Path, workers: int) -> None:
 
 
 def play(variant: str, agent: str, episode: int) -> Episode:
-    """Play an episode of an agent, both by name; see `bench.playing.loop.play`."""
+    """Play an episode of an agent, both by name; see `fogbench.bench.playing.loop.play`."""
     return loop.play(*_find(variant, agent), episode, _TOLD.get()[2])
 
 
 def lose(variant: str, agent: str, episode: int, outcome: Outcome, detail: str) -> Episode:
-    """The record of an episode that took its process with it; see `bench.playing.loop.lost`."""
+    """The record of an episode that took its process with it; see `fogbench.bench.playing.loop.lost`."""
     return loop.lost(*_find(variant, agent), episode, _TOLD.get()[2], outcome, detail)
 
 

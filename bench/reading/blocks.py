@@ -7,10 +7,10 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from bench.reading.positions import Fault, Value
-from bench.reading.shapes import Shape, shape
-from worlds.mistake import near, one_of
-from worlds.settings import Settings
+from fogbench.bench.reading.positions import Fault, Value
+from fogbench.bench.reading.shapes import Shape, shape
+from fogbench.worlds.mistake import near, one_of
+from fogbench.worlds.settings import Settings
 
 Block = TypeVar("Block", bound=Settings)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import yaml
 
-from bench.reading.positions import Fault, Spot, Value, join
+from fogbench.bench.reading.positions import Fault, Spot, Value, join
 
 VARIABLE = re.compile(r"\$\{(\w+)\}")
 """`${NAME}`: the environment variable of that name."""

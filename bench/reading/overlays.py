@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from bench.reading.page import VARIED
-from bench.reading.positions import Fault, Value, merge
-from worlds.mistake import near, one_of
+from fogbench.bench.reading.page import VARIED
+from fogbench.bench.reading.positions import Fault, Value, merge
+from fogbench.worlds.mistake import near, one_of
 
 ALONE = "all"
 """The name of the one variant of a file without variants."""

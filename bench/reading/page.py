@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from worlds.settings import Positive, Settings
+from fogbench.worlds.settings import Positive, Settings
 
 
 def _file_name(name: str) -> str:

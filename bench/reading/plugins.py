@@ -9,11 +9,11 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from bench.reading.blocks import raised
-from bench.reading.tables import EXTRAS, Table
-from worlds.mistake import Unavailable, near, one_of
-from worlds.settings import Settings
-from worlds.streams import digest
+from fogbench.bench.reading.blocks import raised
+from fogbench.bench.reading.tables import EXTRAS, Table
+from fogbench.worlds.mistake import Unavailable, near, one_of
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.streams import digest
 
 
 class PluginError(ValueError):
@@ -60,7 +60,7 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
         raise PluginError(f"a class of {Path(place).name}, which has no {class_name}", near(class_name, classes))
     lacks = [member for member in table.members if not hasattr(found, member)]
     if not issubclass(found, Settings):
-        raise PluginError(f"a class derived from worlds.settings.Settings, with {', '.join(table.members)}")
+        raise PluginError(f"a class derived from fogbench.Settings, with {', '.join(table.members)}")
     if lacks:
         raise PluginError(f"a class with {', '.join(table.members)}; it lacks {', '.join(lacks)}")
     return found

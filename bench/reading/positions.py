@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from worlds.mistake import meant
+from fogbench.worlds.mistake import meant
 
 
 class Fault(NamedTuple):

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
-from bench.reading.document import parse
-from bench.reading.overlays import pages, settle
-from bench.reading.page import CONDITIONS, FileName
-from bench.reading.positions import Fault, Value, merge
-from bench.reading.reading import Reading, opened
-from bench.reading.scenario import wrong
-from bench.reading.tables import NETWORK
-from learned.recipe import Lesson, Recipe, Training, Worlds
-from worlds.mistake import Mistake, near, one_of
-from worlds.types import MapFamily
+from fogbench.bench.reading.document import parse
+from fogbench.bench.reading.overlays import pages, settle
+from fogbench.bench.reading.page import CONDITIONS, FileName
+from fogbench.bench.reading.positions import Fault, Value, merge
+from fogbench.bench.reading.scenario import wrong
+from fogbench.bench.reading.tables import NETWORK
+from fogbench.bench.reading.worlds import Reading, opened
+from fogbench.learned.training.recipe import Lesson, Recipe, Training, Worlds
+from fogbench.worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.types import MapFamily
 
 if TYPE_CHECKING:
-    from learned.policy import Policy
+    from fogbench.learned.policy import Policy
 
 VARIED = ("maps", *CONDITIONS)
 """Keys that a variant may have."""

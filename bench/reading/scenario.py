@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bench.reading.document import parse
-from bench.reading.overlays import pages, settle, unknown_variants
-from bench.reading.positions import Fault
-from bench.reading.variant import VariantReading
-from worlds.mistake import Mistake
-from worlds.types import AgentSettings, MapFamily
+from fogbench.bench.reading.document import parse
+from fogbench.bench.reading.overlays import pages, settle, unknown_variants
+from fogbench.bench.reading.positions import Fault
+from fogbench.bench.reading.variant import VariantReading
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import AgentSettings, MapFamily
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +32,7 @@ class Variant:
     name: str
     family: MapFamily
     conditions: Any
-    """An object of the class that `worlds.KINDS` names for `family.kind`."""
+    """An object of the class that `fogbench.worlds.KINDS` names for `family.kind`."""
     agents: tuple[Entry, ...]
     reference: str
     """Label of the agent that the others are compared with in pairs."""

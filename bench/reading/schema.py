@@ -7,12 +7,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from bench.reading.page import CONDITIONS, VARIED, Page
-from bench.reading.plugins import PluginError, load
-from bench.reading.shapes import Lenient, Schema
-from bench.reading.tables import AGENT, FAMILY, KIND, Table
-from worlds.mistake import Unavailable
-from worlds.settings import Settings
+from fogbench.bench.reading.page import CONDITIONS, VARIED, Page
+from fogbench.bench.reading.plugins import PluginError, load
+from fogbench.bench.reading.shapes import Lenient, Schema
+from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, Table
+from fogbench.worlds.mistake import Unavailable
+from fogbench.worlds.settings import Settings
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core.core_schema import CoreSchema
 
-from worlds.settings import Settings
+from fogbench.worlds.settings import Settings
 
 Schema = dict[str, Any]
 """A JSON Schema."""

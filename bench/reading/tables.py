@@ -8,9 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-import learned
-import planners
-from worlds import FAMILIES, KINDS
+from fogbench import learned, planners
+from fogbench.worlds import FAMILIES, KINDS
 
 
 class Table(NamedTuple):

@@ -4,12 +4,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from bench.reading.page import Page
-from bench.reading.positions import Value
-from bench.reading.reading import Reading
-from bench.reading.tables import AGENT
-from worlds.mistake import near, one_of
-from worlds.types import AgentSettings
+from fogbench.bench.reading.page import Page
+from fogbench.bench.reading.positions import Value
+from fogbench.bench.reading.tables import AGENT
+from fogbench.bench.reading.worlds import Reading
+from fogbench.worlds.mistake import near, one_of
+from fogbench.worlds.types import AgentSettings
 
 
 class Listed(NamedTuple):

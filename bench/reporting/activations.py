@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from bench.reporting.panels import COLOURS, STYLE
-from bench.reporting.tables import Lines
-from worlds.types import Array
+from fogbench.bench.reporting.panels import COLOURS, STYLE
+from fogbench.bench.reporting.tables import Lines
+from fogbench.worlds.types import Array
 
 DASHES = ("--", ":", "-.")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from bench.reporting.metrics import decided, reached
-from bench.reporting.statistics import Estimate, share
-from worlds.types import Array
+from fogbench.bench.reporting.metrics import decided, reached
+from fogbench.bench.reporting.statistics import Estimate, share
+from fogbench.worlds.types import Array
 
 BINS = 8
 """Bins of goal distance at most."""

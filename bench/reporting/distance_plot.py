@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from bench.reading.scenario import Scenario
-from bench.reporting.curves import Bin, by_distance, distance_bins
-from bench.reporting.panels import Look, Looks, arranged, legend, percent
-from bench.reporting.tables import scaled
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.curves import Bin, by_distance, distance_bins
+from fogbench.bench.reporting.panels import Look, Looks, arranged, legend, percent
+from fogbench.bench.reporting.tables import scaled
 
 Frames = Mapping[str, pd.DataFrame]
 """The episodes of each variant."""

@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from bench.reporting.panels import STYLE, look_of
+from fogbench.bench.reporting.panels import STYLE, look_of
 
 
 def write_curves(trials: Sequence[Mapping[str, Any]], folder: Path) -> None:

@@ -1,7 +1,7 @@
 """Questions to the recorded episodes of an agent: one table, in which each says its unit, direction and episodes.
 
 Words used here
-    cell       the episodes of one agent in one variant: a table with the columns of `bench.playing.episode.Episode`
+    cell       the episodes of one agent in one variant: rows of `fogbench.bench.playing.episode`
     optimum    the shortest path on the full map
     A*         A* on the map seen so far, the same-information reference that is recorded with every episode
 """
@@ -16,9 +16,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import ArrayLike
 
-from bench.playing.episode import SCHEMA
-from bench.reporting.statistics import Estimate, mean, ratio_of_sums, share
-from worlds.types import Array, Outcome
+from fogbench.bench.playing.episode import SCHEMA
+from fogbench.bench.reporting.statistics import Estimate, mean, ratio_of_sums, share
+from fogbench.worlds.types import Array, Outcome
 
 
 class Over(NamedTuple):

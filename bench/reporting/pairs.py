@@ -7,9 +7,9 @@ Words used here
 import numpy as np
 import pandas as pd
 
-from bench.reporting.metrics import Metric, Over, everything
-from bench.reporting.statistics import Estimate, difference, discordant, mcnemar, ratio_of_sums
-from worlds.types import Array, Outcome
+from fogbench.bench.reporting.metrics import Metric, Over, everything
+from fogbench.bench.reporting.statistics import Estimate, difference, discordant, mcnemar, ratio_of_sums
+from fogbench.worlds.types import Array, Outcome
 
 
 def pair(cell: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
 
-from bench.reading.scenario import Scenario
-from bench.reporting.trainings import network_of
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.trainings import network_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C6D31")
 """Told apart by the colour-blind too (Okabe & Ito 2008), the palest left out."""

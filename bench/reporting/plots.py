@@ -13,11 +13,11 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bench.reading.scenario import Scenario
-from bench.reporting.curves import Steps, success_by_seconds, success_by_steps
-from bench.reporting.distance_plot import Frames, against_distance
-from bench.reporting.panels import MARKS, STYLE, Looks, legend, looks_of, panels_of, percent
-from worlds.types import Array
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.curves import Steps, success_by_seconds, success_by_steps
+from fogbench.bench.reporting.distance_plot import Frames, against_distance
+from fogbench.bench.reporting.panels import MARKS, STYLE, Looks, legend, looks_of, panels_of, percent
+from fogbench.worlds.types import Array
 
 FAR = 1.5
 """So many times the median ratio, the axis of ratios ends."""
@@ -27,7 +27,7 @@ def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: P
     """Write the plots into `folder`; none if no episode is recorded.
 
     Args:
-        frame: recorded episodes, with the columns `bench.reporting.report.READS`.
+        frame: recorded episodes, with the columns `fogbench.bench.reporting.report.READS`.
         table: their summary.
         scenario: says the order of variants and agents.
         folder: must be there.

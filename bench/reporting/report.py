@@ -7,21 +7,21 @@ from typing import Any
 import pandas as pd
 from rich.console import Console
 
-from bench.reading.scenario import Scenario
-from bench.reporting.metrics import METRICS
-from bench.reporting.pairs import COMPARISONS, pair
-from bench.reporting.sections import comparisons, failures, headline, page, skipped
-from bench.reporting.statistics import holm
-from bench.reporting.tables import print_table
-from bench.reporting.trainings import trainings
-from worlds.types import Outcome
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.metrics import METRICS
+from fogbench.bench.reporting.pairs import COMPARISONS, pair
+from fogbench.bench.reporting.sections import comparisons, failures, headline, page, skipped
+from fogbench.bench.reporting.statistics import holm
+from fogbench.bench.reporting.tables import print_table
+from fogbench.bench.reporting.trainings import trainings
+from fogbench.worlds.types import Outcome
 
 READS = (
     "variant", "kind", "agent", "episode", "outcome", "steps", "budget_steps", "length", "shortest",
     "reference_length", "judged", "wrong_decisions", "strict_wrong", "setup_seconds", "decision_seconds",
     "peak_memory_bytes", "search_nodes", "detail", "world_key",
 )  # fmt: skip
-"""The columns of `bench.playing.episode.Episode` that a report is made of."""
+"""The columns of `fogbench.bench.playing.episode.Episode` that a report is made of."""
 
 COLUMNS = ("scenario", "variant", "agent", "metric", "value", "low", "high", "n", "unit")
 """The columns of `summary.csv`."""
@@ -55,7 +55,7 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
     Returns:
         The summary.
     """
-    from bench.reporting.plots import draw  # noqa: PLC0415  it imports matplotlib, which the tables do not need
+    from fogbench.bench.reporting.plots import draw  # noqa: PLC0415  it imports matplotlib, which the tables do not need
 
     table = summary(frame, scenario)
     folder.mkdir(parents=True, exist_ok=True)

@@ -5,13 +5,13 @@ from typing import Any
 
 import pandas as pd
 
-from bench.reading.scenario import Scenario
-from bench.reporting.metrics import METRICS, Metric
-from bench.reporting.pairs import COMPARISONS
-from bench.reporting.statistics import Estimate
-from bench.reporting.tables import NOTHING, Lines, heading, markdown, written
-from bench.reporting.trainings import trainings
-from worlds.types import Outcome
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.metrics import METRICS, Metric
+from fogbench.bench.reporting.pairs import COMPARISONS
+from fogbench.bench.reporting.statistics import Estimate
+from fogbench.bench.reporting.tables import NOTHING, Lines, heading, markdown, written
+from fogbench.bench.reporting.trainings import trainings
+from fogbench.worlds.types import Outcome
 
 ASKED = {metric.name: metric for metric in (*METRICS, *COMPARISONS)}
 

@@ -8,9 +8,9 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from scipy.spatial.distance import cdist
 
-from bench.reporting.panels import COLOURS, MARKS, STYLE, Look, legend
-from worlds.mistake import Mistake
-from worlds.types import Array, Move
+from fogbench.bench.reporting.panels import COLOURS, MARKS, STYLE, Look, legend
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Array, Move
 
 PERPLEXITY = 30
 """Neighbours that t-SNE gives each point; where there are few points, a third of them."""

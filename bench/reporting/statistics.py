@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from worlds.types import Array
+from fogbench.worlds.types import Array
 
 CONFIDENCE = 0.95
 RESAMPLES = 1000

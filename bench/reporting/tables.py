@@ -10,8 +10,8 @@ from rich.measure import Measurement
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from bench.reporting.metrics import Metric
-from bench.reporting.statistics import Estimate
+from fogbench.bench.reporting.metrics import Metric
+from fogbench.bench.reporting.statistics import Estimate
 
 NOTHING = "—"
 """What stands where nothing was measured."""

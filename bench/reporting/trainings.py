@@ -10,11 +10,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from bench.reading.scenario import Scenario, Variant
-from bench.reporting.metrics import METRICS, Metric
-from bench.reporting.pairs import COMPARISONS, pair, successes
-from bench.reporting.statistics import Estimate, difference
-from bench.reporting.tables import NOTHING, Lines, heading, number, written
+from fogbench.bench.reading.scenario import Scenario, Variant
+from fogbench.bench.reporting.metrics import METRICS, Metric
+from fogbench.bench.reporting.pairs import COMPARISONS, pair, successes
+from fogbench.bench.reporting.statistics import Estimate, difference
+from fogbench.bench.reporting.tables import NOTHING, Lines, heading, number, written
 
 AVERAGED = tuple(
     metric for metric in METRICS if metric.name in {"success", "path_ratio", "reference_ratio", "test_error"}
@@ -28,7 +28,7 @@ def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> L
     The interval of the difference from the reference agent is one over episodes, for these trainings.
 
     Args:
-        frame: the recorded episodes, with the columns `bench.reporting.report.READS`.
+        frame: the recorded episodes, with the columns `fogbench.bench.reporting.report.READS`.
         table: their summary.
         scenario: says who plays against whom.
     """

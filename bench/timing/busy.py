@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from worlds.settings import Positive, Settings
-from worlds.types import Move, Observation, Task
+from fogbench.worlds.settings import Positive, Settings
+from fogbench.worlds.types import Move, Observation, Task
 
 
 class Busy(Settings):

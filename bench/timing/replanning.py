@@ -14,8 +14,8 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from bench.playing.loop import play
-from bench.reading.scenario import read_scenario
+from fogbench.bench.playing.loop import play
+from fogbench.bench.reading.scenario import read_scenario
 
 TEXT = """
 name: replanning

@@ -16,10 +16,10 @@ import torch
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor, nn
 
-from learned.dnc import DNC
-from learned.dnc_access import AccessState, Heads, access
-from learned.dnc_fast import fast_access
-from worlds.types import Array
+from fogbench.learned.dnc.access import AccessState, Heads, access
+from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.dnc.fast import fast_access
+from fogbench.worlds.types import Array
 
 THREADS = 2
 ROUNDS, STEPS = 30, 10

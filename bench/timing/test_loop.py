@@ -4,10 +4,10 @@ from itertools import count
 
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from bench.playing.loop import Record, episode_world, play, start_and_roll
-from bench.reading.scenario import read_scenario
-from bench.shipped import find
-from planners.random_walk import RandomWalk
+from fogbench.bench.playing.loop import Record, episode_world, play, start_and_roll
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.bench.shipped import find
+from fogbench.planners.random_walk import RandomWalk
 
 GRID = find(["grid"])[0]
 SCENARIO = read_scenario(GRID.read_text("utf-8"), GRID)

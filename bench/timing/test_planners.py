@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from bench.playing.loop import Record, episode_stream, episode_world, start_and_roll
-from bench.playing.replay import retrace
-from bench.reading.plugins import load
-from bench.reading.scenario import read_scenario
-from bench.reading.tables import AGENT
-from bench.shipped import find
-from planners import PLANNERS
-from planners.astar import search
-from worlds.blobs import Blobs
-from worlds.conditions import BudgetSettings, Tasks
-from worlds.grid import GridConditions
-from worlds.movingai import MovingAI
-from worlds.types import BLOCKED, FREE, Agent, AgentSettings, Observation
+from fogbench.bench.playing.loop import Record, episode_stream, episode_world, start_and_roll
+from fogbench.bench.playing.replay import retrace
+from fogbench.bench.reading.plugins import load
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.bench.reading.tables import AGENT
+from fogbench.bench.shipped import find
+from fogbench.planners import PLANNERS
+from fogbench.planners.astar import search
+from fogbench.worlds.conditions import BudgetSettings, Tasks
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.movingai import MovingAI
+from fogbench.worlds.types import BLOCKED, FREE, Agent, AgentSettings, Observation
 
 GRID = find(["grid"])[0]
 VARIANTS = read_scenario(GRID.read_text("utf-8"), GRID).variants

@@ -15,16 +15,16 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor
 
-from bench.reading.plugins import load
-from bench.reading.tables import AGENT
-from learned import LEARNED
-from learned import value_iteration as vi
-from learned.macn import Macn
-from learned.policy import Policy, PolicyAgent, weighted
-from worlds.blobs import Blobs
-from worlds.conditions import BudgetSettings, Tasks
-from worlds.grid import GridConditions
-from worlds.types import Observation
+from fogbench.bench.reading.plugins import load
+from fogbench.bench.reading.tables import AGENT
+from fogbench.learned import LEARNED
+from fogbench.learned.macn import Macn
+from fogbench.learned.policy import Policy, PolicyAgent, weighted
+from fogbench.learned.value_iteration import value_iteration as vi
+from fogbench.worlds.conditions import BudgetSettings, Tasks
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.types import Observation
 
 THREADS = 1
 ROUNDS, DECISIONS = 100, 10

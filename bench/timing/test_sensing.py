@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from worlds.belief import fuse
-from worlds.blobs import Blobs
-from worlds.conditions import BudgetSettings
-from worlds.grid import GridConditions, GridState, SquareView
+from fogbench.worlds.conditions import BudgetSettings
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.rules import SquareView
+from fogbench.worlds.grid.world import GridState
+from fogbench.worlds.maps.cells import fuse
+from fogbench.worlds.maps.families.blobs import Blobs
 
 CONDITIONS = GridConditions(budget=BudgetSettings(steps=80))
 RNG = np.random.default_rng(0)

@@ -15,8 +15,8 @@ import torch
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor
 
-from learned.value_iteration import plain
-from learned.value_iteration_fast import fast
+from fogbench.learned.value_iteration.fast import fast
+from fogbench.learned.value_iteration.value_iteration import plain
 
 THREADS = 2
 ROUNDS = 15

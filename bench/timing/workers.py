@@ -14,8 +14,8 @@ from subprocess import PIPE, Popen
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from bench.playing.runner import Progress, run
-from bench.reading.scenario import read_scenario
+from fogbench.bench.playing.runner import Progress, run
+from fogbench.bench.reading.scenario import read_scenario
 
 ROUNDS = 15
 STEPS, COUNT = 40, 150_000

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from bench.reading.scenario import Scenario, read_scenario
+from fogbench.bench.reading.scenario import Scenario, read_scenario
 
 Make = Callable[..., Scenario]
 
@@ -31,8 +31,8 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from planners.astar import AStarAgent
-from worlds.settings import Settings
+from fogbench.planners.astar import AStarAgent
+from fogbench.worlds.settings import Settings
 
 
 class Bad(Settings):

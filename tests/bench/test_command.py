@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from bench.command import main
+from fogbench.bench.command import main
 
 Fogbench = Callable[..., tuple[int, str, str]]
 
@@ -24,7 +24,7 @@ episodes: 2
 
 PLANNER = """
 from typing import ClassVar
-from planners.memoryless import Memoryless
+from fogbench.planners.memoryless import Memoryless
 
 
 class Listed(Memoryless):

@@ -10,23 +10,23 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-import bench
-from bench.doctor import _requirements, examine
-from learned import LEARNED
-from planners import PLANNERS
+import fogbench
+from fogbench.bench.doctor import _requirements, examine
+from fogbench.learned import LEARNED
+from fogbench.planners import PLANNERS
 
 PLAYED = """
 import json, sys
 from pathlib import Path
 import torch
 from numba.core.registry import CPUDispatcher
-from bench.playing.loop import play
-from bench.reading.scenario import read_scenario
-from bench.shipped import find
-from learned.dnc import DNC
-from learned.dnc_access import Heads
-from learned.value_iteration import ValueIteration
-from worlds.kernel import _CALLBACKS as loops
+from fogbench.bench.playing.loop import play
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.bench.shipped import find
+from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.dnc.access import Heads
+from fogbench.learned.value_iteration.value_iteration import ValueIteration
+from fogbench.worlds.kernel import _CALLBACKS as loops
 
 outcomes = set()
 networks = "{macn: {checkpoint: none}}, {vin: {checkpoint: none, stitched: true}}, {cnn_memory: {checkpoint: none}}"
@@ -43,7 +43,7 @@ module(torch.rand(3, 2, 4, 4))[0].sum().backward()
 module.requires_grad_(False)(torch.rand(1, 2, 6, 5))
 DNC(3, 4, Heads(2, 2, 5))(torch.rand(7, 3, 3))[0].sum().backward()
 
-ours = "worlds", "planners", "learned", "bench"
+ours = "fogbench.worlds", "fogbench.planners", "fogbench.learned", "fogbench.bench"
 modules = [module for name, module in sys.modules.items() if name.startswith(ours)]
 kernels = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
 compiled = [each for each in kernels if each.stats.cache_misses] + [each for each in loops if not each.cache_hits]
@@ -65,7 +65,7 @@ def rows(printed: str) -> list[list[str]]:
 
 def run(script: str, cache: Path) -> str:
     """What a script prints in a process of its own, which keeps its kernels in `cache`; any warning is an error."""
-    packages = str(Path(bench.__file__).parents[1])
+    packages = str(Path(fogbench.__file__).parents[1])
     environment = {name: value for name, value in os.environ.items() if name != "FOGBENCH_MAPS"}
     environment |= {"PYTHONPATH": packages, "NUMBA_CACHE_DIR": str(cache), "COLUMNS": "240"}
     return subprocess.check_output([sys.executable, "-W", "error", "-c", script], env=environment, text=True)
@@ -76,13 +76,15 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
 ) -> None:
     """The project is installed from its checkout; without extras, or a place to write, all else is still examined."""
     monkeypatch.setenv("COLUMNS", "160")
-    monkeypatch.setattr("bench.doctor.requires", lambda _: ["fog-lamp", 'fog-horn; extra == "noise"'])
+    monkeypatch.setattr("fogbench.bench.doctor.requires", lambda _: ["fog-lamp", 'fog-horn; extra == "noise"'])
     for package in ("torch", "ompl"):
         monkeypatch.setitem(sys.modules, package, None)
-    needy = [name for name in sys.modules if name == "planners.rrt_star" or name.startswith("learned.")]
+    needy = [
+        name for name in sys.modules if name == "fogbench.planners.rrt_star" or name.startswith("fogbench.learned.")
+    ]
     for module in needy:
         monkeypatch.delitem(sys.modules, module)
-    monkeypatch.setattr("bench.doctor.kept", lambda _: None)
+    monkeypatch.setattr("fogbench.bench.doctor.kept", lambda _: None)
     examine()
     told = rows(capsys.readouterr().out)
     assert ["fog-lamp", "missing: pip install .", "everything"] in told
@@ -97,8 +99,8 @@ def test_a_checkout_knows_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None
     def absent(name: str) -> list[str]:
         raise PackageNotFoundError(name)
 
-    monkeypatch.setattr("bench.doctor.requires", absent)
-    monkeypatch.setattr("bench.doctor.PYPROJECT", Path(__file__).parents[2] / "pyproject.toml")
+    monkeypatch.setattr("fogbench.bench.doctor.requires", absent)
+    monkeypatch.setattr("fogbench.bench.doctor.PYPROJECT", Path(__file__).parents[2] / "pyproject.toml")
     needs = {need.name: need.marker for need in map(Requirement, _requirements())}
     assert needs["numpy"] is None
     assert str(needs["torch"]) == 'extra == "learned"'
@@ -106,13 +108,19 @@ def test_a_checkout_knows_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
     """Every kernel that shipped agents and learning need is read from where it was said to be kept."""
-    told = dict(row for row in rows(run("from bench.doctor import examine\nexamine()", tmp_path)) if len(row) == 2)
+    told = dict(
+        row for row in rows(run("from fogbench.bench.doctor import examine\nexamine()", tmp_path)) if len(row) == 2
+    )
     place = Path(told["kernels"].removeprefix("compiled, kept in "))
     assert place.parent == tmp_path
-    assert list(place.glob("planners.astar.search-*.nbc"))
+    assert list(place.glob("fogbench.planners.astar.search-*.nbc"))
     assert "with gradients" in told["value iteration, 128 maps of 16x16, 20 times"]
     assert "with gradients" in told["a DNC, 64 samples, 10 steps"]
     found = json.loads(run(PLAYED, tmp_path))
     assert found["played"] == sorted([*PLANNERS.values(), *LEARNED.values()])
     assert (found["crashed"], found["compiled"]) == ([], [])
-    assert {"planners.incremental", "planners.segment", "learned.value_iteration_forward"} <= set(found["read from"])
+    assert {
+        "fogbench.planners.incremental",
+        "fogbench.planners.segment",
+        "fogbench.learned.value_iteration.forward",
+    } <= set(found["read from"])

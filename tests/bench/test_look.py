@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from bench.look import look_inside
-from bench.playing.loop import lost, play
-from bench.playing.store import recording
-from bench.reading.scenario import Entry, Scenario
-from worlds.mistake import Mistake
-from worlds.types import Move, Outcome
+from fogbench.bench.look import look_inside
+from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.store import recording
+from fogbench.bench.reading.scenario import Entry, Scenario
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Move, Outcome
 
 AGENTS: list[Any] = [
     "astar",

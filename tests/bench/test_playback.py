@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from bench.playback import replay_recorded
-from bench.playing.loop import lost, play
-from bench.playing.store import recording
-from bench.reading.scenario import Scenario
-from worlds.mistake import Mistake
-from worlds.types import Outcome
+from fogbench.bench.playback import replay_recorded
+from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.store import recording
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Outcome
 
 Make = Callable[..., Scenario]
 

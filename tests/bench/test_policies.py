@@ -8,16 +8,16 @@ import pandas as pd
 import pytest
 import torch
 
-from bench.playing.episode import SCHEMA, TIMINGS
-from bench.playing.keys import agent_key
-from bench.playing.loop import episode_world
-from bench.playing.replay import End, retrace, verify
-from bench.playing.runner import run
-from bench.playing.store import read
-from bench.reading.scenario import ScenarioError, read_scenario
-from learned import checkpoint
-from learned.policy import weighted
-from learned.vin import Vin
+from fogbench.bench.playing.episode import SCHEMA, TIMINGS
+from fogbench.bench.playing.keys import agent_key
+from fogbench.bench.playing.loop import episode_world
+from fogbench.bench.playing.replay import End, retrace, verify
+from fogbench.bench.playing.runner import run
+from fogbench.bench.playing.store import read
+from fogbench.bench.reading.scenario import ScenarioError, read_scenario
+from fogbench.learned import checkpoint
+from fogbench.learned.policy import weighted
+from fogbench.learned.vin import Vin
 
 SHIPPED = ", ".join(["none", *sorted(card.stem for card in checkpoint.SHIPPED.glob("*.json"))])
 

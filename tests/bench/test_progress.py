@@ -4,8 +4,8 @@ from io import StringIO
 
 from rich.console import Console
 
-from bench.playing.runner import Progress
-from bench.progress import Bars
+from fogbench.bench.playing.runner import Progress
+from fogbench.bench.progress import Bars
 
 
 def test_names_are_printed_as_they_are() -> None:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from bench.shipped import RECIPES, find, find_recipe, folder
-from worlds.mistake import Mistake
+from fogbench.bench.shipped import RECIPES, find, find_recipe, folder
+from fogbench.worlds.mistake import Mistake
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from bench.command import main
-from bench.reporting.learning import curves
-from bench.shipped import RECIPES
+from fogbench.bench.command import main
+from fogbench.bench.reporting.learning import curves
+from fogbench.bench.shipped import RECIPES
 
 Fogbench = Callable[..., tuple[int, str, str]]
 

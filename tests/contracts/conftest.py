@@ -13,15 +13,13 @@ import pytest
 import torch
 from PIL import Image
 
-import learned
-import planners
-import worlds
-from worlds.blobs import Blobs
-from worlds.bug_trap import BugTrap
-from worlds.maze import Maze
-from worlds.rooms import Rooms
-from worlds.tunnel import Tunnel
-from worlds.types import AgentSettings, MapFamily, Observation, World
+from fogbench import learned, planners, worlds
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.bug_trap import BugTrap
+from fogbench.worlds.maps.families.maze import Maze
+from fogbench.worlds.maps.families.rooms import Rooms
+from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.types import AgentSettings, MapFamily, Observation, World
 
 AGENTS: dict[str, list[dict[str, Any]]] = {
     "astar": [{}, {"replan": "change"}],
@@ -40,7 +38,7 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
     "cnn_memory": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
 }
-"""Settings of every entry of `planners.PLANNERS` and `learned.LEARNED`, small enough to play fast."""
+"""Settings of every entry of `fogbench.planners.PLANNERS` and `fogbench.learned.LEARNED`, small enough to play fast."""
 
 FAMILIES: dict[str, list[dict[str, Any]]] = {
     "blobs": [
@@ -57,7 +55,7 @@ FAMILIES: dict[str, list[dict[str, Any]]] = {
     "movingai": [{"map": "one.map"}, {"map": "two.map"}, {"map": "one.map", "scen": "two.map.scen"}],
     "occupancy": [{"map": "one.yaml"}, {"map": "two.yaml"}, {"map": "one.yaml", "downsample": 2}],
 }
-"""Settings of every entry of `worlds.FAMILIES`, all different; files are those of the fixture `folder`."""
+"""Settings of every entry of `fogbench.worlds.FAMILIES`, all different; files are those of the fixture `folder`."""
 
 ARENAS: dict[str, list[tuple[MapFamily, dict[str, Any]]]] = {
     "grid": [

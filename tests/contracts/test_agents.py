@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from worlds import KINDS
-from worlds.types import AgentSettings, Move, World
+from fogbench.worlds import KINDS
+from fogbench.worlds.types import AgentSettings, Move, World
 
 Play = Callable[..., Any]
 

@@ -8,9 +8,9 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from worlds import FAMILIES, KINDS
-from worlds.grid import GridWorld
-from worlds.types import COVARIATES, MapError, MapFamily
+from fogbench.worlds import FAMILIES, KINDS
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.types import COVARIATES, MapError, MapFamily
 
 Conditions = Callable[..., Any]
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from learned.dnc_layout import Buffers
-from worlds.settings import Settings
-from worlds.types import AgentSettings, Task, World
+from fogbench.learned.dnc.layout import Buffers
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import AgentSettings, Task, World
 
 NOT_CARRIED = (Settings, Task, np.random.Generator, torch.nn.Module, Buffers, type)
 """What an agent was given when it started, the weights it shares with all others of its settings, its classes, and the

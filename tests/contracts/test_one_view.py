@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from worlds.belief import look
-from worlds.grid import GridWorld
-from worlds.types import AgentSettings, Cell, World
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.sight import look
+from fogbench.worlds.types import AgentSettings, Cell, World
 
 
 def elsewhere(world: GridWorld, places: set[Cell], rng: np.random.Generator) -> tuple[GridWorld, int]:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from learned import checkpoint
-from learned.policy import Policy, weighted
+from fogbench.learned import checkpoint
+from fogbench.learned.policy import Policy, weighted
 
 
 @pytest.fixture

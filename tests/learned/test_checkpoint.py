@@ -9,12 +9,12 @@ import pytest
 import torch
 from safetensors.torch import save_file
 
-from learned import checkpoint
-from learned.checkpoint import located, place_of, read_card, read_weights
-from learned.policy import weighted
-from learned.vin import Vin
-from worlds.files import sha256
-from worlds.mistake import Mistake
+from fogbench.learned import checkpoint
+from fogbench.learned.checkpoint import located, place_of, read_card, read_weights
+from fogbench.learned.policy import weighted
+from fogbench.learned.vin import Vin
+from fogbench.worlds.files import sha256
+from fogbench.worlds.mistake import Mistake
 
 VIN = Vin(checkpoint="none", seed=3)
 

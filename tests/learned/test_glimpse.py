@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import torch
 
-from learned.cnn_memory import CnnMemory
-from learned.dnc import DNCState
-from learned.dnc_access import AccessState
-from learned.glimpse import glimpse, held
-from learned.macn import Macn
-from learned.memory import LSTMState
-from learned.policy import Policy
-from learned.vin import Vin
+from fogbench.learned.cnn_memory import CnnMemory
+from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.dnc import DNCState
+from fogbench.learned.glimpse import glimpse, held
+from fogbench.learned.macn import Macn
+from fogbench.learned.memory import LSTMState
+from fogbench.learned.policy import Policy
+from fogbench.learned.vin import Vin
 
 HELD = {
     "dnc": {"controller": (256,), "memory": (32 * 8,), "written": (32,), "read": (32,)},

@@ -9,15 +9,15 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-from learned.cnn_memory import CnnMemory
-from learned.dnc import DNC
-from learned.encoding import CHANNELS, COMPASS, SIGHT, Inputs
-from learned.macn import Macn
-from learned.memory import LSTM, FeedForward
-from learned.network import settled
-from learned.policy import Policy
-from learned.value_iteration import ValueIteration, plain
-from learned.vin import Vin
+from fogbench.learned.cnn_memory import CnnMemory
+from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.encoding.grid import CHANNELS, COMPASS, SIGHT, Inputs
+from fogbench.learned.macn import Macn
+from fogbench.learned.memory import LSTM, FeedForward
+from fogbench.learned.network import settled
+from fogbench.learned.policy import Policy
+from fogbench.learned.value_iteration.value_iteration import ValueIteration, plain
+from fogbench.learned.vin import Vin
 
 NETWORKS: dict[str, Policy] = {
     "macn": Macn(checkpoint="none"),

@@ -10,13 +10,13 @@ import pytest
 import torch
 from pydantic import ValidationError
 
-from learned.cnn_memory import CnnMemory
-from learned.macn import Macn
-from learned.network import Network
-from learned.policy import Policy, PolicyAgent, load, weighted
-from learned.vin import Vin
-from worlds.mistake import Mistake
-from worlds.types import Move, Task
+from fogbench.learned.cnn_memory import CnnMemory
+from fogbench.learned.macn import Macn
+from fogbench.learned.network import Network
+from fogbench.learned.policy import Policy, PolicyAgent, load, weighted
+from fogbench.learned.vin import Vin
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Move, Task
 
 Save = Callable[..., str]
 
@@ -198,7 +198,7 @@ def test_the_highest_score_is_taken(
 ) -> None:
     """Of equals the first; the state and the move are handed on to the next step."""
     network = Scores(scores)
-    monkeypatch.setattr("learned.policy.weighted", lambda settings: network)
+    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda settings: network)
     world = draw("#..\n.S.\n..G", radius=2)
     agent = PolicyAgent(POLICIES[0], world.task)
     observation = world.sense(world.reset(), np.random.default_rng())
@@ -213,7 +213,7 @@ def test_the_highest_score_is_taken(
 def test_a_stitched_map_remembers(draw: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
     """Only with `stitched` does a cell stay known when it is out of view."""
     networks = {True: Scores([0, 1, 0, 0]), False: Scores([0, 1, 0, 0])}
-    monkeypatch.setattr("learned.policy.weighted", lambda settings: networks[settings.stitched])
+    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda settings: networks[settings.stitched])
     world = draw("S...G")
     for stitched, network in networks.items():
         agent = PolicyAgent(Vin(checkpoint="none", stitched=stitched), world.task)

@@ -6,9 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from worlds.grid import GridConditions, GridWorld, SquareView
-from worlds.layout import Layout, fit
-from worlds.types import BLOCKED, FREE, Agent, AgentSettings, Budget, Move, Observation, Step, Task
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.rules import SquareView
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.layout import Layout, fit
+from fogbench.worlds.types import BLOCKED, FREE, Agent, AgentSettings, Budget, Move, Observation, Step, Task
 
 
 class Moment(NamedTuple):

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.astar import AStar, search
-from worlds.grid import GridWorld, manhattan
-from worlds.types import BLOCKED, DELTAS, Array, Cell, Move
+from fogbench.planners.astar import AStar, search
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import manhattan
+from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -7,11 +7,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.astar import AStar, glance, search
-from planners.dstar_lite import DStarLite
-from planners.incremental import FAR
-from worlds.grid import GridWorld
-from worlds.types import BLOCKED, Array, Cell, Move
+from fogbench.planners.astar import AStar, glance, search
+from fogbench.planners.dstar_lite import DStarLite
+from fogbench.planners.incremental import FAR
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.types import BLOCKED, Array, Cell, Move
 
 seeds = st.integers(0, 2**32 - 1)
 

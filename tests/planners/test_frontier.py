@@ -8,10 +8,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.frontier import Frontier
-from planners.incremental import FAR
-from worlds.grid import GridWorld, manhattan
-from worlds.types import FREE, UNKNOWN, Array, Cell, Move
+from fogbench.planners.frontier import Frontier
+from fogbench.planners.incremental import FAR
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import manhattan
+from fogbench.worlds.types import FREE, UNKNOWN, Array, Cell, Move
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planners.dstar_lite import DStarLite, DStarLiteAgent
-from planners.frontier import Frontier
-from planners.incremental import EMPTY, FAR, descend
-from worlds.grid import GridWorld, manhattan
-from worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell
+from fogbench.planners.dstar_lite import DStarLite, DStarLiteAgent
+from fogbench.planners.frontier import Frontier
+from fogbench.planners.incremental import EMPTY, FAR, descend
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import manhattan
+from fogbench.worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell
 
 seeds = st.integers(0, 2**32 - 1)
 both = pytest.mark.parametrize("planner", [DStarLite(), Frontier()])

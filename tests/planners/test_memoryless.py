@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from planners.astar import AStar
-from planners.memoryless import Memoryless
-from worlds.grid import GridWorld
-from worlds.types import Move
+from fogbench.planners.astar import AStar
+from fogbench.planners.memoryless import Memoryless
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.types import Move
 
 WALL = """
     ..#.

@@ -7,11 +7,11 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from planners.optimal import OptimalMoves
-from worlds.belief import KnownMap
-from worlds.blobs import Blobs
-from worlds.grid import GridWorld
-from worlds.types import BLOCKED, DELTAS, Array, Cell, Move
+from fogbench.planners.optimal import OptimalMoves
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move
 
 MAPS = Blobs(size=8, obstacles=(3, 9), obstacle_size=(1, 3))
 NOISE = {"false_readings": 0.1, "slip": 0.2, "collision": "blocked"}

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import chisquare
 
-from planners.random_walk import RandomWalk
-from worlds.grid import GridWorld, SquareView
-from worlds.types import BLOCKED, FREE, Array, Budget, Move, Observation, Task
+from fogbench.planners.random_walk import RandomWalk
+from fogbench.worlds.grid.rules import SquareView
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.types import BLOCKED, FREE, Array, Budget, Move, Observation, Task
 
 TASK = Task("grid", (0, 0), SquareView(radius=1), Budget(100), (3, 3))
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from planners.route import Route
-from worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Move
+from fogbench.planners.route import Route
+from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Move
 
 OPEN = np.full((2, 3), FREE, np.uint8)  # [H, W]
 ROUND = [0, 1, 2, 5, 4, 3]  # right, right, down, left, left

@@ -15,13 +15,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import planners.rrt_star
-from planners.astar import search
-from planners.rrt_star import Plan, RrtStar, plan
-from planners.segment import PARTS, clear
-from worlds.blobs import Blobs
-from worlds.grid import GridConditions, GridWorld
-from worlds.types import BLOCKED, Array, Cell, Move
+from fogbench.planners import rrt_star
+from fogbench.planners.astar import search
+from fogbench.planners.rrt_star import Plan, RrtStar, plan
+from fogbench.planners.segment import PARTS, clear
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.types import BLOCKED, Array, Cell, Move
 
 PLANNERS = get_args(RrtStar.model_fields["planner"].annotation)
 
@@ -114,7 +115,7 @@ def test_a_plan_repeats() -> None:
 
 def test_another_seed_is_another_plan() -> None:
     """Luck comes from the seed, up to the last one."""
-    found = [plan(WALL, START, GOAL, RrtStar(), seed) for seed in (1, 2, planners.rrt_star.SEEDS)]
+    found = [plan(WALL, START, GOAL, RrtStar(), seed) for seed in (1, 2, rrt_star.SEEDS)]
     assert all(words(a) != words(b) for a, b in combinations(found, 2))
 
 
@@ -195,7 +196,7 @@ def test_it_plans_again_only_when_its_path_is_cut(
         asked.append(len(ahead) < 2 or bool((known.flat[ahead] == BLOCKED).any()))
         return plan(known, start, *rest)
 
-    monkeypatch.setattr(planners.rrt_star, "plan", counted)
+    monkeypatch.setattr(rrt_star, "plan", counted)
     for seed in range(30):
         ahead = np.empty(0, np.int32)
         world = strew(np.random.default_rng(seed), side=24)
@@ -208,7 +209,7 @@ def test_it_plans_again_only_when_its_path_is_cut(
 def test_search_effort_is_that_of_all_plans(draw: Callable[..., GridWorld], explore: Callable[..., Any]) -> None:
     """In a corridor one plan is enough, and its vertices are the whole effort."""
     moments = list(explore(RrtStar(iterations=50), draw("S..G"), np.random.default_rng(0)))
-    seed = int(np.random.default_rng(0).integers(1, planners.rrt_star.SEEDS, endpoint=True))
+    seed = int(np.random.default_rng(0).integers(1, rrt_star.SEEDS, endpoint=True))
     known = np.zeros((1, 4), np.uint8)
     vertices = plan(known, (0, 0), (0, 3), RrtStar(iterations=50), seed).vertices
     assert [moment.agent.search_nodes() for moment in moments] == [vertices] * 3

@@ -7,8 +7,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planners.segment import PARTS, clear, walk
-from worlds.types import BLOCKED, Array
+from fogbench.planners.segment import PARTS, clear, walk
+from fogbench.worlds.types import BLOCKED, Array
 
 HEIGHT, WIDTH = 5, 7
 

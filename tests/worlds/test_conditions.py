@@ -3,8 +3,8 @@
 import pytest
 from pydantic import ValidationError
 
-from worlds.conditions import BudgetSettings, PerDistance, Tasks
-from worlds.types import Budget
+from fogbench.worlds.conditions import BudgetSettings, PerDistance, Tasks
+from fogbench.worlds.types import Budget
 
 
 def test_a_number_of_steps_is_the_same_at_every_distance() -> None:

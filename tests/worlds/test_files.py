@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-import worlds
-from worlds.files import alone, put
-from worlds.mistake import Mistake
+import fogbench
+from fogbench.worlds.files import alone, put
+from fogbench.worlds.mistake import Mistake
 
 HOLD = """
 import sys
 from pathlib import Path
-from worlds.files import alone
+from fogbench.worlds.files import alone
 
 with alone(Path("held"), "run"):
     print("held", flush=True)
@@ -26,7 +26,7 @@ with alone(Path("held"), "run"):
 
 def start(folder: Path) -> subprocess.Popen[str]:
     """The script, beside the folder."""
-    environment = {"PYTHONPATH": str(Path(worlds.__file__).parents[1])}
+    environment = {"PYTHONPATH": str(Path(fogbench.__file__).parents[1])}
     command, pipe = [sys.executable, "-c", HOLD], subprocess.PIPE
     return subprocess.Popen(command, cwd=folder, env=environment, stdin=pipe, stdout=pipe, stderr=pipe, text=True)
 
@@ -38,7 +38,7 @@ def test_a_second_process_is_refused_until_the_first_dies(tmp_path: Path) -> Non
     assert first.stdout.readline() == "held\n"
     _, told = start(tmp_path).communicate()
     line = f"held: got a second run; expected the one in process {first.pid} to end first."
-    assert told.splitlines()[-1] == f"worlds.mistake.Mistake: {line}"
+    assert told.splitlines()[-1] == f"fogbench.worlds.mistake.Mistake: {line}"
     first.kill()
     first.communicate()
     assert start(tmp_path).communicate() == ("held\n", "")

@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-import worlds
+import fogbench
+from fogbench import worlds
 
 WITHOUT_RIGHTS = """
 import ctypes, os, struct
@@ -50,8 +51,9 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 SCRIPT = """
 import json
 import numpy as np
-from worlds.belief import __file__, hidden, look, passable
-from worlds.kernel import kept
+from fogbench.worlds.maps.cells import __file__, passable
+from fogbench.worlds.maps.sight import hidden, look
+from fogbench.worlds.kernel import kept
 
 assert kept(look) is None
 view = look(np.eye(3, dtype=np.bool_), 0, 1, 1, True)
@@ -103,14 +105,18 @@ def forms(folder: Path) -> set[str]:
     return {path.name.partition("-")[0] for path in folder.rglob("*.nbc*") if path.is_file()}
 
 
-FORMS = {"worlds.belief.look", "worlds.belief.hidden", "worlds.belief.passable"}
+FORMS = {f"fogbench.worlds.maps.{name}" for name in ("sight.look", "sight.hidden", "cells.passable")}
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Iterator[Path]:
-    """A folder with the sources of `worlds`, and nothing that was compiled from them."""
+    """A folder with the sources of `fogbench.worlds`, and nothing that was compiled from them."""
     place = tmp_path / "install"
-    shutil.copytree(Path(worlds.__file__).parent, place / "worlds", ignore=shutil.ignore_patterns("__pycache__"))
+    place.joinpath("fogbench").mkdir(parents=True)
+    for file in Path(fogbench.__file__).parent.glob("__init__.py*"):
+        shutil.copy(file, place / "fogbench")
+    sources = Path(worlds.__file__).parent
+    shutil.copytree(sources, place / "fogbench" / "worlds", ignore=shutil.ignore_patterns("__pycache__"))
     yield place
     for path in [place, *place.rglob("*/")]:
         path.chmod(0o755)
@@ -134,8 +140,8 @@ def seal(folder: Path) -> None:
 def test_kernels_are_kept_beside_their_source(folder: Path) -> None:
     """Where that can be written, the compiled forms are on disk after the first call, and read by the next process."""
     result = end(start(folder))
-    assert result["file"] == str(folder / "worlds" / "belief.py")
-    assert Path(result["folder"]).parent == folder / "worlds" / "__pycache__"
+    assert result["file"] == str(folder / "fogbench" / "worlds" / "belief.py")
+    assert Path(result["folder"]).parent == folder / "fogbench" / "worlds" / "__pycache__"
     assert told(result) == COLD
     assert forms(Path(result["folder"])) == FORMS
     assert told(end(start(folder))) == WARM
@@ -144,7 +150,7 @@ def test_kernels_are_kept_beside_their_source(folder: Path) -> None:
 def test_an_edit_of_another_file_is_noticed(folder: Path) -> None:
     """A constant that a kernel takes from elsewhere is compiled into it, and compiled anew when it changes."""
     before = end(start(folder))
-    types = folder / "worlds" / "types.py"
+    types = folder / "fogbench" / "worlds" / "types.py"
     types.write_text(types.read_text().replace("UNKNOWN, FREE, BLOCKED = 0, 1, 2", "UNKNOWN, FREE, BLOCKED = 0, 1, 3"))
     after = end(start(folder))
     assert before["folder"] != after["folder"]
@@ -153,7 +159,7 @@ def test_an_edit_of_another_file_is_noticed(folder: Path) -> None:
 
 def play(folder: Path, name: str, lines: list[str]) -> str:
     """What a file of a user's own prints."""
-    (folder / f"{name}.py").write_text("\n".join(["from worlds.kernel import kernel", *lines]))
+    (folder / f"{name}.py").write_text("\n".join(["from fogbench.worlds.kernel import kernel", *lines]))
     process = start(folder, f"import {name}")
     out, err = process.communicate()
     assert (process.returncode, err) == (0, "")
@@ -251,7 +257,7 @@ def test_processes_may_compile_at_once(folder: Path) -> None:
 
 def test_kernels_that_nobody_uses_are_removed(folder: Path) -> None:
     """By the next that makes a folder, after a month without use; what is newer, or nothing of ours, stays."""
-    cache = folder / "worlds" / "__pycache__"
+    cache = folder / "fogbench" / "worlds" / "__pycache__"
     days = {"0" * 16: 31, "1" * 16: 29, "2" * 16: 31, "other": 31, "3" * 40: 31}
     for name in days:
         (cache / name).mkdir(parents=True)
@@ -280,12 +286,12 @@ def test_use_keeps_kernels(folder: Path) -> None:
 
 def test_kernels_may_be_removed_at_any_moment(folder: Path) -> None:
     """A process that runs compiles anew what it misses, and keeps it."""
-    remove = f"{SCRIPT}\nimport shutil\nfrom worlds.belief import fuse\nplace = kept(look)\nshutil.rmtree(place)\n"
+    remove = "\nimport shutil\nfrom fogbench.worlds.maps.cells import fuse\nplace = kept(look)\nshutil.rmtree(place)\n"
     again = "fuse(np.zeros((3, 3), np.uint8), view, 1, 1)\nassert kept(fuse) == place\nassert place.exists()"
-    assert told(end(start(folder, remove + again))) == COLD
+    assert told(end(start(folder, SCRIPT + remove + again))) == COLD
 
 
 def test_a_kernel_without_a_file_is_compiled() -> None:
     """What is typed at a prompt can be a kernel too."""
-    script = "from worlds.kernel import kernel\ntwice = kernel(lambda x: 2 * x)\nprint(twice(21))"
-    assert start(Path(worlds.__file__).parents[1], script).communicate() == ("42\n", "")
+    script = "from fogbench.worlds.kernel import kernel\ntwice = kernel(lambda x: 2 * x)\nprint(twice(21))"
+    assert start(Path(fogbench.__file__).parents[1], script).communicate() == ("42\n", "")

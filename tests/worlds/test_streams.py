@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from worlds.streams import digest, stream
+from fogbench.worlds.streams import digest, stream
 
 
 def test_a_digest_is_the_sha256_of_its_words() -> None:

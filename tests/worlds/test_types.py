@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from worlds.types import DELTAS, Move
+from fogbench.worlds.types import DELTAS, Move
 
 
 def test_moves_come_in_quarter_turns() -> None:

@@ -10,7 +10,7 @@ from torch import Tensor
 from torch.nn.functional import conv2d
 from turns import Turns, elapsed, milliseconds
 
-from learned.value_iteration_fast import fast
+from fogbench.learned.value_iteration.fast import fast
 
 THREADS = 2
 SHAPES = [(128, 16, 20), (32, 32, 40), (8, 64, 80), (512, 11, 16)]

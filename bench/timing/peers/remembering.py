@@ -10,8 +10,8 @@ import torch
 from torch import nn
 from turns import Turns, elapsed, milliseconds
 
-from learned.dnc import DNC
-from learned.dnc_access import Heads
+from fogbench.learned.dnc.access import Heads
+from fogbench.learned.dnc.dnc import DNC
 
 THREADS = 2
 BATCH, STEPS, INPUTS, HIDDEN, ROWS = 64, 10, 16, 256, 32

@@ -14,12 +14,13 @@ import numpy as np
 import pyastar2d
 from turns import Round, Turns, milliseconds
 
-from planners.astar import search
-from worlds.blobs import Blobs
-from worlds.conditions import BudgetSettings, Tasks
-from worlds.grid import GridConditions, GridWorld
-from worlds.movingai import MovingAI
-from worlds.types import BLOCKED, FREE, MapFamily
+from fogbench.planners.astar import search
+from fogbench.worlds.conditions import BudgetSettings, Tasks
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.movingai import MovingAI
+from fogbench.worlds.types import BLOCKED, FREE, MapFamily
 
 TASKS = 10
 """Worlds of each family."""

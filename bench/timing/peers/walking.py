@@ -24,10 +24,10 @@ import numpy as np
 from minigrid.envs.empty import EmptyEnv
 from turns import Round, Turns, per_second
 
-from bench.playing.loop import Record, episode_world, play, start_and_roll
-from bench.reading.scenario import read_scenario
-from bench.shipped import find
-from planners.random_walk import RandomWalk
+from fogbench.bench.playing.loop import Record, episode_world, play, start_and_roll
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.bench.shipped import find
+from fogbench.planners.random_walk import RandomWalk
 
 EPISODES = 100
 """In a round."""

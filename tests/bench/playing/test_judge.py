@@ -7,15 +7,15 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from bench.playing.judge import GridJudge
-from bench.playing.loop import Record, roll
-from planners.astar import AStar
-from planners.memoryless import Memoryless
-from planners.random_walk import RandomWalk
-from worlds.belief import KnownMap
-from worlds.blobs import Blobs
-from worlds.grid import GridWorld
-from worlds.types import BLOCKED, Array, Cell, Move, Observation
+from fogbench.bench.playing.judge import GridJudge
+from fogbench.bench.playing.loop import Record, roll
+from fogbench.planners.astar import AStar
+from fogbench.planners.memoryless import Memoryless
+from fogbench.planners.random_walk import RandomWalk
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.types import BLOCKED, Array, Cell, Move, Observation
 
 MAPS = Blobs(size=7, obstacles=(3, 9), obstacle_size=(1, 3))
 NOISE = {"false_readings": 0.2, "slip": 0.2, "slip_to": "sideways", "collision": "blocked"}

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from bench.playing.keys import agent_key, world_key
-from bench.reading.scenario import Variant, read_scenario
-from planners.astar import AStar
+from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.reading.scenario import Variant, read_scenario
+from fogbench.planners.astar import AStar
 
 TEXT = """\
 name: keys
@@ -24,7 +24,7 @@ seed: 1
 """
 
 PLUGIN = """
-from planners.astar import AStar
+from fogbench.planners.astar import AStar
 
 
 class Mine(AStar):
@@ -32,7 +32,7 @@ class Mine(AStar):
 """
 
 FAMILY = """
-from worlds.blobs import Blobs
+from fogbench.worlds.maps.families.blobs import Blobs
 
 
 class Sparse(Blobs):
@@ -124,13 +124,13 @@ def test_a_users_map_family_counts_by_its_source(tmp_path: Path) -> None:
 
 def test_sources_are_in_the_keys(tmp_path: Path) -> None:
     """Those of the worlds and of the loop are in the one, those of the planners in the other, no report in any."""
-    for package in ("worlds", "planners", "learned", "bench"):
+    for package in ("fogbench.worlds", "fogbench.planners", "fogbench.learned", "fogbench.bench"):
         shutil.copytree(Path(__import__(package).__path__[0]), tmp_path / package)
 
     def both() -> list[str]:
         code = (
-            "from pathlib import Path; from bench.playing.keys import *;"
-            "from bench.reading.scenario import read_scenario;"
+            "from pathlib import Path; from fogbench.bench.playing.keys import *;"
+            "from fogbench.bench.reading.scenario import read_scenario;"
             f"variant = read_scenario({TEXT!r}, Path('keys.yaml')).variants[0];"
             "print(world_key(variant), agent_key(variant.agents[0]))"
         )
@@ -140,7 +140,7 @@ def test_sources_are_in_the_keys(tmp_path: Path) -> None:
 
     world, agent = both()
     for file, changed in (
-        ("worlds/belief.py", (True, False)),
+        ("worlds/maps/cells.py", (True, False)),
         ("planners/route.py", (False, True)),
         ("bench/playing/loop.py", (True, False)),
         ("bench/reporting/report.py", (False, False)),

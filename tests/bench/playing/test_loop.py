@@ -9,15 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from bench.playing.episode import Episode
-from bench.playing.keys import agent_key, world_key
-from bench.playing.loop import episode_world, lost, play
-from bench.reading.scenario import Entry, Scenario, Variant
-from planners.astar import AStar
-from planners.random_walk import RandomWalk
-from worlds.blobs import Blobs
-from worlds.settings import Settings
-from worlds.types import Move, Observation, Outcome, Task
+from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.playing.loop import episode_world, lost, play
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.planners.astar import AStar
+from fogbench.planners.random_walk import RandomWalk
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import Move, Observation, Outcome, Task
 
 D, R, U, L = Move
 

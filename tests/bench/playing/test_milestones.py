@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bench.playing.milestones import corridor, milestones
-from worlds.blobs import Blobs
-from worlds.tunnel import Tunnel
-from worlds.types import Cell
+from fogbench.bench.playing.milestones import corridor, milestones
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.types import Cell
 
 TUNNEL = """
     ..........

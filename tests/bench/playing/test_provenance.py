@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from bench.playing.provenance import noted, read_run
-from bench.playing.store import StoreError
-from worlds.mistake import Mistake
+from fogbench.bench.playing.provenance import noted, read_run
+from fogbench.bench.playing.store import StoreError
+from fogbench.worlds.mistake import Mistake
 
 
 def test_every_session_is_noted(make: Any, tmp_path: Path) -> None:

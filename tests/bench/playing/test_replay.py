@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, film, known, strip, truth
-from bench.playing.loop import lost, play
-from bench.playing.replay import End, Moment, retrace, verify
-from bench.reading.scenario import Entry, Scenario, Variant
-from planners.astar import AStar
-from planners.memoryless import Memoryless
-from planners.random_walk import RandomWalk
-from worlds.blobs import Blobs
-from worlds.mistake import Mistake
-from worlds.types import BLOCKED, FREE, UNKNOWN, Outcome
+from fogbench.bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, film, known, strip, truth
+from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.replay import End, Moment, retrace, verify
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.planners.astar import AStar
+from fogbench.planners.memoryless import Memoryless
+from fogbench.planners.random_walk import RandomWalk
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Outcome
 
 Row = dict[str, Any]
 

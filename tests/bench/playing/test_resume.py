@@ -14,18 +14,18 @@ import pandas as pd
 import psutil
 import pytest
 
-from bench.playing.episode import SCHEMA, TIMINGS
-from bench.playing.runner import AHEAD
-from bench.playing.store import read
-from bench.reading.scenario import Scenario
+from fogbench.bench.playing.episode import SCHEMA, TIMINGS
+from fogbench.bench.playing.runner import AHEAD
+from fogbench.bench.playing.store import read
+from fogbench.bench.reading.scenario import Scenario
 
 RUN = """
 import signal
 import sys
 from pathlib import Path
-from bench.playing import store
-from bench.playing.runner import run
-from bench.reading.scenario import read_scenario
+from fogbench.bench.playing import store
+from fogbench.bench.playing.runner import run
+from fogbench.bench.reading.scenario import read_scenario
 store.PAUSE = 0.05  # seconds; else a quick machine is killed each time before it has written anything
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the background jobs of a shell are deaf to it
 path = Path(sys.argv[1])
@@ -40,8 +40,8 @@ import time
 from pathlib import Path
 from typing import ClassVar
 
-from planners.astar import AStarAgent
-from worlds.settings import Settings
+from fogbench.planners.astar import AStarAgent
+from fogbench.worlds.settings import Settings
 
 
 class Logged(Settings):

@@ -8,12 +8,12 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from bench.playing import keys
-from bench.playing.episode import SCHEMA, TIMINGS
-from bench.playing.runner import Progress, RunError, run
-from bench.playing.store import read
-from bench.reading.scenario import Scenario
-from worlds.types import Outcome
+from fogbench.bench.playing import keys
+from fogbench.bench.playing.episode import SCHEMA, TIMINGS
+from fogbench.bench.playing.runner import Progress, RunError, run
+from fogbench.bench.playing.store import read
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.types import Outcome
 
 FACTS = [name for name in SCHEMA.names if name not in TIMINGS]
 """All columns but the timings."""
@@ -148,8 +148,8 @@ from typing import ClassVar
 
 from threadpoolctl import threadpool_info
 
-from planners.random_walk import RandomWalkAgent
-from worlds.settings import Settings
+from fogbench.planners.random_walk import RandomWalkAgent
+from fogbench.worlds.settings import Settings
 
 
 class Threads(Settings):

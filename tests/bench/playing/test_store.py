@@ -13,11 +13,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from bench.playing.episode import SCHEMA, Episode
-from bench.playing.keys import agent_key, world_key
-from bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
-from bench.reading.scenario import Scenario
-from worlds.mistake import Mistake
+from fogbench.bench.playing.episode import SCHEMA, Episode
+from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.mistake import Mistake
 
 
 def row(scenario: Scenario, episode: int, **changes: Any) -> Episode:
@@ -190,8 +190,8 @@ MANY = """
 import pickle, re, sys
 from dataclasses import replace
 from pathlib import Path
-from bench.reading.scenario import read_scenario
-from bench.playing.store import recorded, recording
+from fogbench.bench.reading.scenario import read_scenario
+from fogbench.bench.playing.store import recorded, recording
 
 path = Path(sys.argv[1])
 scenario = read_scenario(path.read_text(), path)

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from bench.reading.plugins import load, target
-from bench.reading.scenario import Scenario, ScenarioError, read_scenario
-from bench.reading.tables import AGENT, agents, families, first_sentence, registered
-from learned import LEARNED
-from planners import PLANNERS
-from worlds import FAMILIES
+from fogbench.bench.reading.plugins import load, target
+from fogbench.bench.reading.scenario import Scenario, ScenarioError, read_scenario
+from fogbench.bench.reading.tables import AGENT, agents, families, first_sentence, registered
+from fogbench.learned import LEARNED
+from fogbench.planners import PLANNERS
+from fogbench.worlds import FAMILIES
 
 SCENARIO = """\
 name: mine
@@ -29,8 +29,8 @@ AGENT_FILE = '''
 from pathlib import Path
 from typing import ClassVar, Literal
 from pydantic import field_validator
-from planners.memoryless import MemorylessAgent
-from worlds.settings import MapFile, Settings
+from fogbench.planners.memoryless import MemorylessAgent
+from fogbench.worlds.settings import MapFile, Settings
 
 
 class Mine(Settings):
@@ -80,8 +80,8 @@ class Unfinished(Settings):
 FAMILY_FILE = '''
 from typing import ClassVar
 from pydantic import model_validator
-from worlds.blobs import Blobs
-from worlds.layout import DrawnMaps
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.layout import DrawnMaps
 
 
 class Sparse(Blobs):
@@ -164,8 +164,8 @@ def test_a_map_family_in_a_file(read: Read) -> None:
 
 def test_a_class_in_a_module(read: Read) -> None:
     """Any that can be imported."""
-    agent = read("planners.random_walk:RandomWalk").variants[0].agents[1]
-    assert (agent.label, agent.target) == ("RandomWalk", "planners.random_walk:RandomWalk")
+    agent = read("fogbench.planners.random_walk:RandomWalk").variants[0].agents[1]
+    assert (agent.label, agent.target) == ("RandomWalk", "fogbench.planners.random_walk:RandomWalk")
 
 
 def test_an_agent_of_another_kind_of_world_is_skipped_with_its_reason(read: Read) -> None:
@@ -183,7 +183,7 @@ def test_an_agent_of_another_kind_of_world_is_skipped_with_its_reason(read: Read
         ("./mine.py:Nine", "a class of mine.py, which has no Nine. Did you mean Mine?"),
         (
             "./mine.py:Plain",
-            "a class derived from worlds.settings.Settings, with kinds, start, parameter_bytes.",
+            "a class derived from fogbench.Settings, with kinds, start, parameter_bytes.",
         ),
         ("./mine.py:Unfinished", "a class with kinds, start, parameter_bytes; it lacks start, parameter_bytes."),
         (
@@ -204,9 +204,9 @@ def test_an_agent_of_another_kind_of_world_is_skipped_with_its_reason(read: Read
             "./packed.py:Mine",
             "one file alone, or a package that is installed; it imports my_lamps, which lies beside it.",
         ),
-        ("planners.nowhere:Mine", "a module that is installed; there is no planners.nowhere."),
+        ("fogbench.planners.nowhere:Mine", "a module that is installed; there is no planners.nowhere."),
         ("nowhere.at_all:Mine", "a module that is installed; there is no nowhere."),
-        ("planners.astar:Astar", "a class of planners.astar, which has no Astar. Did you mean AStar?"),
+        ("fogbench.planners.astar:Astar", "a class of planners.astar, which has no Astar. Did you mean AStar?"),
     ],
 )
 def test_what_is_wrong_with_a_class_of_a_user_is_one_line(
@@ -295,7 +295,7 @@ def test_an_agent_whose_package_is_missing_is_skipped_with_its_reason(read: Read
 def test_a_missing_extra_is_named_with_the_way_to_get_it(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
     """As for a planner that stands on a package of an extra, here one of a file."""
     monkeypatch.setitem(AGENT.shipped, "lamp", "fog_shop:Lamp")
-    monkeypatch.setattr("bench.reading.plugins.EXTRAS", {"lamp": "light"})
+    monkeypatch.setattr("fogbench.bench.reading.plugins.EXTRAS", {"lamp": "light"})
     Path("fog_shop.py").write_text("import fog_lamp\n")
     monkeypatch.syspath_prepend(Path.cwd())
     (_, agent) = read("lamp").variants[0].agents
@@ -344,8 +344,8 @@ def test_entry_points_of_other_packages(
     monkeypatch.syspath_prepend(tmp_path)
     registered.cache_clear()
     request.addfinalizer(registered.cache_clear)
-    assert families() == {**FAMILIES, "tubes": "worlds.tunnel:Tunnel"}
-    walker, net = "planners.random_walk:RandomWalk", "planners.memoryless:Memoryless"
+    assert families() == {**FAMILIES, "tubes": "fogbench.worlds.maps.families.tunnel:Tunnel"}
+    walker, net = "fogbench.planners.random_walk:RandomWalk", "fogbench.planners.memoryless:Memoryless"
     assert agents() == {**PLANNERS, **LEARNED, "walker": walker, "net": net}
     assert [agent.target for agent in read("walker, net").variants[0].agents] == [PLANNERS["astar"], walker, net]
     assert line(read, "walkr").endswith("Did you mean walker?")
@@ -357,8 +357,8 @@ def test_first_sentences_are_told_without_an_import(tmp_path: Path) -> None:
         module, _, class_name = name.rpartition(":")
         __import__(module)
         assert first_sentence(name) == getattr(sys.modules[module], class_name).__doc__.partition("\n")[0]
-    assert first_sentence("planners.astar:Nothing") == ""
+    assert first_sentence("fogbench.planners.astar:Nothing") == ""
     assert first_sentence("nowhere.at_all:Mine") == ""
     before = set(sys.modules)
-    first_sentence("planners.frontier:Frontier")
+    first_sentence("fogbench.planners.frontier:Frontier")
     assert set(sys.modules) == before

@@ -5,16 +5,15 @@ from typing import cast
 
 import pytest
 
-import learned
-import worlds
-from bench.reading.recipe import read_recipe
-from bench.reading.scenario import ScenarioError
-from learned.checkpoint import SHIPPED
-from learned.macn import Macn
-from learned.recipe import Teacher, Training
-from worlds.blobs import Blobs
-from worlds.mistake import Mistake
-from worlds.tunnel import Tunnel
+from fogbench import learned, worlds
+from fogbench.bench.reading.recipe import read_recipe
+from fogbench.bench.reading.scenario import ScenarioError
+from fogbench.learned.checkpoint import SHIPPED
+from fogbench.learned.macn import Macn
+from fogbench.learned.training.recipe import Teacher, Training
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"

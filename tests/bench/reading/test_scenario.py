@@ -4,11 +4,9 @@ from pathlib import Path
 
 import pytest
 
-import learned
-import planners
-import worlds
-from bench.reading.scenario import ScenarioError, read_scenario
-from worlds.mistake import Mistake
+from fogbench import learned, planners, worlds
+from fogbench.bench.reading.scenario import ScenarioError, read_scenario
+from fogbench.worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 AGENTS = f"one of {', '.join([*planners.PLANNERS, *learned.LEARNED])}, or a class as file.py:Class or module:Class"

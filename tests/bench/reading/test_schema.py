@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 import yaml
 
-from bench.reading.schema import schema
-from bench.shipped import find
-from learned import LEARNED
-from planners import PLANNERS
-from worlds import FAMILIES
+from fogbench.bench.reading.schema import schema
+from fogbench.bench.shipped import find
+from fogbench.learned import LEARNED
+from fogbench.planners import PLANNERS
+from fogbench.worlds import FAMILIES
 
 SCHEMA = schema()
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 import pytest
 from pydantic import Field
 
-from bench.reading.shapes import shape
-from worlds.settings import Count, MapFile, Positive, PositiveRange, Probability, Range, Settings
+from fogbench.bench.reading.shapes import shape
+from fogbench.worlds.settings import Count, MapFile, Positive, PositiveRange, Probability, Range, Settings
 
 
 class Part(Settings):

@@ -7,16 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from bench.reading.page import Published
-from bench.reading.scenario import Scenario, ScenarioError, read_scenario
-from bench.reporting.sections import HEADLINE
-from planners.astar import AStar
-from planners.memoryless import Memoryless
-from worlds.blobs import Blobs
-from worlds.conditions import BudgetSettings, PerDistance, Tasks
-from worlds.grid import GridConditions, GridRules, SquareView
-from worlds.movingai import MovingAI
-from worlds.tunnel import Tunnel
+from fogbench.bench.reading.page import Published
+from fogbench.bench.reading.scenario import Scenario, ScenarioError, read_scenario
+from fogbench.bench.reporting.sections import HEADLINE
+from fogbench.planners.astar import AStar
+from fogbench.planners.memoryless import Memoryless
+from fogbench.worlds.conditions import BudgetSettings, PerDistance, Tasks
+from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.rules import GridRules, SquareView
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.movingai import MovingAI
+from fogbench.worlds.maps.families.tunnel import Tunnel
 
 BLOBS = "blobs: {size: 16, obstacles: [0, 12], obstacle_size: [1, 3]}"
 
@@ -44,7 +45,12 @@ def test_defaults() -> None:
     assert variant.family == Blobs(size=16, obstacles=(0, 12), obstacle_size=(1, 3))
     assert variant.conditions == GridConditions(budget=BudgetSettings(steps=40))
     (agent,) = variant.agents
-    assert (agent.label, agent.target, agent.settings, agent.skipped) == ("astar", "planners.astar:AStar", AStar(), "")
+    assert (agent.label, agent.target, agent.settings, agent.skipped) == (
+        "astar",
+        "fogbench.planners.astar:AStar",
+        AStar(),
+        "",
+    )
 
 
 def test_a_variant_is_laid_over_the_rest() -> None:
@@ -195,6 +201,15 @@ def test_every_published_metric_is_one_that_a_report_shows() -> None:
 
 def test_reading_imports_only_what_a_scenario_names() -> None:
     """The reader itself needs no compiler, no planner, no plots."""
-    heavy = {"numba", "matplotlib", "pandas", "networkx", "ompl", "worlds.blobs", "worlds.tunnel", "planners.astar"}
-    code = f"import bench.reading.scenario, sys; print(sorted({heavy} & set(sys.modules)))"
+    heavy = {
+        "numba",
+        "matplotlib",
+        "pandas",
+        "networkx",
+        "ompl",
+        "fogbench.worlds.maps.families.blobs",
+        "fogbench.worlds.maps.families.tunnel",
+        "fogbench.planners.astar",
+    }
+    code = f"import fogbench.bench.reading.scenario, sys; print(sorted({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"

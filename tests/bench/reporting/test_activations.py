@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.reporting.activations import activations, changes, table
+from fogbench.bench.reporting.activations import activations, changes, table
 
 MEMORY = np.array([[3.0, 4], [3, 4], [0, 0], [0, -2]])
 """Of two numbers, after four steps."""

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bench.reporting.curves import by_distance, distance_bins, success_by_seconds, success_by_steps
+from fogbench.bench.reporting.curves import by_distance, distance_bins, success_by_seconds, success_by_steps
 
 Recorded = Callable[..., pd.DataFrame]
 

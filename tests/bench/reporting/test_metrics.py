@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bench.reporting.metrics import METRICS, decision_milliseconds
-from bench.reporting.statistics import Estimate
-from worlds.types import Outcome
+from fogbench.bench.reporting.metrics import METRICS, decision_milliseconds
+from fogbench.bench.reporting.statistics import Estimate
+from fogbench.worlds.types import Outcome
 
 Recorded = Callable[..., pd.DataFrame]
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pandas as pd
 import pytest
 
-from bench.reporting.pairs import COMPARISONS, pair
+from fogbench.bench.reporting.pairs import COMPARISONS, pair
 
 Recorded = Callable[..., pd.DataFrame]
 FAILED = {"outcome": "COLLIDED"}

@@ -12,10 +12,10 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bench.reading.scenario import Entry, Scenario
-from bench.reporting.panels import Look, looks_of, panels_of
-from bench.reporting.plots import draw, draw_figures
-from bench.reporting.report import summary
+from fogbench.bench.reading.scenario import Entry, Scenario
+from fogbench.bench.reporting.panels import Look, looks_of, panels_of
+from fogbench.bench.reporting.plots import draw, draw_figures
+from fogbench.bench.reporting.report import summary
 
 Recorded = Callable[..., pd.DataFrame]
 Make = Callable[..., Scenario]

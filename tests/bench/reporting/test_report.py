@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from bench.playing.episode import SCHEMA
-from bench.reading.scenario import Scenario
-from bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
-from bench.reporting.sections import ASKED, columns, failures
+from fogbench.bench.playing.episode import SCHEMA
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
+from fogbench.bench.reporting.sections import ASKED, columns, failures
 
 Recorded = Callable[..., pd.DataFrame]
 Make = Callable[..., Scenario]
@@ -160,9 +160,9 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
-from bench.playing.episode import SCHEMA
-from bench.reporting.report import READS, write_report
-from bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.playing.episode import SCHEMA
+from fogbench.bench.reporting.report import READS, write_report
+from fogbench.bench.reading.scenario import Entry, Scenario, Variant
 
 n, cells = 10_000, 10
 rng = np.random.default_rng(0)

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.reporting.spaces import Decisions, embedded, separability, spaces
-from worlds.mistake import Mistake
-from worlds.types import Array
+from fogbench.bench.reporting.spaces import Decisions, embedded, separability, spaces
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Array
 
 CLUSTERS = np.array([[0.0, 0], [0, 1], [1, 0], [1, 1], [9, 9], [9, 8], [8, 9], [8, 8]])
 """Two of four points each."""

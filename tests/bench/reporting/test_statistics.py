@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.reporting.statistics import Estimate, difference, holm, mcnemar, mean, ratio_of_sums, share
+from fogbench.bench.reporting.statistics import Estimate, difference, holm, mcnemar, mean, ratio_of_sums, share
 
 Z = 1.959963984540054
 HITS = st.lists(st.booleans(), min_size=1, max_size=60)

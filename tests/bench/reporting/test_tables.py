@@ -7,9 +7,9 @@ import pytest
 from rich.console import Console
 from rich.text import Text
 
-from bench.reporting.metrics import ALL, METRICS, Metric
-from bench.reporting.statistics import Estimate
-from bench.reporting.tables import Lines, heading, markdown, print_table, scaled, terminal, written
+from fogbench.bench.reporting.metrics import ALL, METRICS, Metric
+from fogbench.bench.reporting.statistics import Estimate
+from fogbench.bench.reporting.tables import Lines, heading, markdown, print_table, scaled, terminal, written
 
 NAMED = {metric.name: metric for metric in METRICS}
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from bench.reading.scenario import Scenario
-from bench.reporting.report import summary
-from bench.reporting.trainings import trainings
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.report import summary
+from fogbench.bench.reporting.trainings import trainings
 
 Recorded = Callable[..., pd.DataFrame]
 Make = Callable[..., Scenario]

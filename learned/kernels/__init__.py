@@ -1,0 +1,1 @@
+"""Compiled loops for networks: lanes of numbers, threads without Python, linear layers."""

@@ -1,0 +1,1 @@
+"""How networks learn: recipes, episodes side by side, imitation, trials and checkpoints."""

@@ -1,0 +1,161 @@
+"""A whole training: batches, trials on held-out maps, and a state on disk from which it goes on when it was stopped.
+
+In its folder
+    state.pt          all that changes: weights, optimiser, number of batches, what was reached
+    log.jsonl         one line for each trial
+    NAME.safetensors  the best weights so far, with their card beside them
+"""
+
+import io
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import torch
+
+from fogbench.learned import checkpoint
+from fogbench.learned.training.imitation import Student, rehearse, validate
+from fogbench.learned.training.recipe import Recipe
+from fogbench.worlds.files import put
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.streams import digest
+
+SAVED_EVERY = 120.0
+"""Seconds between two savings, at most; it changes nothing but what a stop can cost."""
+
+KEPT = ("trials", "losses", "best", "seconds")
+"""What a course remembers beside its student."""
+
+Trial = dict[str, Any]
+"""A line of the log: `batch`, `loss` since the trial before, `seconds`, and `variants` with what each reached."""
+
+
+class News(NamedTuple):
+    """What is told after every batch."""
+
+    batches: int
+    loss: float
+    trial: Trial | None
+
+
+class Course:
+    """A training, from where it was left."""
+
+    def __init__(self, recipe: Recipe, folder: Path, origin: Mapping[str, Any]) -> None:
+        """Start, or go on from the state in `folder`.
+
+        Args:
+            recipe: what is trained, and how.
+            folder: for all that is written; it is made if it is not there.
+            origin: where the weights come from, for their card: commit, machine, versions.
+
+        Raises:
+            Mistake: a world of the recipe cannot be played, or the folder holds the state of another training.
+        """
+        rehearse(recipe)
+        folder.mkdir(parents=True, exist_ok=True)
+        self.recipe, self.folder, self.origin = recipe, folder, origin
+        self.student = Student(recipe)
+        self.trials: list[Trial] = []
+        self.losses: list[float] = []  # since the last trial
+        self.best: list[float] = []
+        self.seconds = 0.0
+        if self._state.exists():
+            self._load()
+
+    def go_on(self) -> Iterator[News]:
+        """Train to the end; stopped at any moment, a new course goes on from the last saved state to the same end."""
+        began, saved = perf_counter() - self.seconds, perf_counter()
+        while self.student.batches < self.recipe.training.batches:
+            self.losses.append(self.student.learn())
+            loss, tried = self.losses[-1], self._is_due()
+            self.seconds = perf_counter() - began
+            if tried:
+                self._try()
+            if tried or perf_counter() - saved > SAVED_EVERY:
+                self._save()
+                saved = perf_counter()
+            yield News(self.student.batches, loss, self.trials[-1] if tried else None)
+
+    def _is_due(self) -> bool:
+        batches, training = self.student.batches, self.recipe.training
+        return batches % training.validation.every == 0 or batches == training.batches
+
+    def _try(self) -> None:
+        """Try the network; keep its weights if they are the best so far."""
+        variants = validate(self.recipe, self.student.network)
+        loss = sum(self.losses) / len(self.losses)
+        self.losses = []
+        self.trials.append(
+            {"batch": self.student.batches, "loss": loss, "seconds": round(self.seconds, 1), "variants": variants}
+        )
+        reached = [_mean(variants, "success"), -_mean(variants, "test_error")]
+        if reached >= self.best:  # of equals, the later has learned more
+            self.best = reached
+            self._keep()
+
+    def _keep(self) -> None:
+        training = {
+            "recipe": self.recipe.text,
+            "seed": self.recipe.training.seed,
+            "batches": self.student.batches,
+            "of": self.recipe.training.batches,
+            "variants": self.trials[-1]["variants"],
+            "minutes": round(self.seconds / 60, 1),
+            "device": self.recipe.network.device,
+            "threads": torch.get_num_threads(),
+            **self.origin,
+        }
+        network, weights = type(self.recipe.network).__name__, self.student.network.state_dict()
+        checkpoint.write(self.weights, network, self.recipe.network.trained(), weights, training)
+
+    @property
+    def weights(self) -> Path:
+        """The file of the best weights."""
+        return self.folder / f"{self.recipe.name}{checkpoint.SUFFIX}"
+
+    @property
+    def _state(self) -> Path:
+        return self.folder / "state.pt"
+
+    def _save(self) -> None:
+        state = {
+            "recipe": digest(self.recipe.words()),
+            "threads": torch.get_num_threads(),
+            **self.student.state(),
+            **{name: getattr(self, name) for name in KEPT},
+        }
+        lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
+        put(self.folder / "log.jsonl", lines.encode())  # first: what the state has, the log has too
+        contents = io.BytesIO()
+        torch.save(state, contents)
+        put(self._state, contents.getvalue())
+
+    def _load(self) -> None:
+        try:
+            state = torch.load(self._state, map_location=self.recipe.network.device, weights_only=True)
+            self._recognise(state)
+            self.student.restore(state)
+            vars(self).update({name: state[name] for name in KEPT})
+        except Mistake:
+            raise
+        except Exception:  # noqa: BLE001  whatever a broken file does to its reader
+            raise Mistake(f"{self._state}: got a broken file; expected a training's state, or a new folder.") from None
+
+    def _recognise(self, state: Mapping[str, Any]) -> None:
+        """Hold a state against this course, which must come to the same end as the one that left it."""
+        threads, before = torch.get_num_threads(), state["threads"]
+        if state["recipe"] != digest(self.recipe.words()):
+            expected = "this one's, its batches and seed included, or a new folder"
+            raise Mistake(f"{self.folder}: got a training by another recipe; expected {expected}.")
+        if threads != before:
+            expected = f"{before} as before (OMP_NUM_THREADS={before}), or a new folder"
+            raise Mistake(f"{self.folder}: got {threads} threads for its training; expected {expected}.")
+        if state["best"] and not self.weights.exists():
+            raise Mistake(f"{self.weights}: got no such file; expected the best weights so far, or a new folder.")
+
+
+def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:
+    return sum(variant[metric] for variant in variants.values()) / len(variants)

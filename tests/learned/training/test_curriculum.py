@@ -1,0 +1,48 @@
+"""Maps that grow from easy to full."""
+
+import numpy as np
+import pytest
+
+from fogbench.learned.training.curriculum import eased
+from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.maze import Maze
+from fogbench.worlds.maps.families.rooms import Rooms
+from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.types import MapFamily
+
+EASY = Blobs(size=32, obstacles=(2, 2), obstacle_size=(1, 2))
+FULL = Blobs(size=32, obstacles=(0, 30), obstacle_size=(1, 5))
+
+
+def test_numbers_grow_in_step() -> None:
+    """At the ends stand the two families; in between each number is as far on its way, rounded."""
+    assert eased(EASY, FULL, 0) == EASY
+    assert eased(EASY, FULL, 0.5) == Blobs(size=32, obstacles=(1, 16), obstacle_size=(1, 4))
+    assert eased(EASY, FULL, 1) is FULL
+
+
+def test_words_change_at_the_end() -> None:
+    """What is no number stays easy until the full family; fractions grow without being rounded."""
+    easy, full = Tunnel(length=(4, 4), goal="inside"), Tunnel(length=(4, 20), open=0.5)
+    assert eased(easy, full, 0.5) == Tunnel(length=(4, 12), open=0.25, goal="inside")
+    assert eased(easy, full, 1) == full
+
+
+def test_a_maze_grows_by_odd_sizes() -> None:
+    """What lies in between as a number but is no maze is left out."""
+    sizes = [eased(Maze(size=5), Maze(size=9), share) for share in (0, 0.25, 0.45, 0.55, 0.75, 1)]
+    assert sizes == [Maze(size=size) for size in (5, 5, 7, 7, 7, 9)]
+
+
+@pytest.mark.parametrize(
+    ("easy", "full"),
+    [
+        (Tunnel(length=(4, 4)), Tunnel(length=(9, 9), width=3)),
+        (Tunnel(length=(4, 10)), Tunnel(length=(8, 20), bends=(1, 3))),
+        (Rooms(size=5, rooms=(2, 2), doors=(1, 1)), Rooms(size=15, rooms=(8, 8), doors=(1, 1))),
+        (Maze(size=15), Maze(size=5)),
+    ],
+)
+def test_all_on_the_way_is_valid(easy: MapFamily, full: MapFamily) -> None:
+    """Whatever stands at its ends, a training never meets a family that cannot be."""
+    assert all(isinstance(eased(easy, full, share), type(full)) for share in np.linspace(0, 1, 501))

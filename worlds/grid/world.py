@@ -1,0 +1,99 @@
+"""The grid world: a map of free and blocked cells, four moves, a square view."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fogbench.worlds.grid.rules import GridRules, SquareView
+from fogbench.worlds.maps.cells import manhattan, passable
+from fogbench.worlds.maps.covariates import covariates
+from fogbench.worlds.maps.sight import look, misread
+from fogbench.worlds.types import Array, Cell, Move, Observation, Step, Task
+
+
+class GridState(NamedTuple):
+    """Where an episode stands."""
+
+    step: int
+    place: Cell
+    blocked: bool
+    """Whether an obstacle stopped the last move."""
+    witnessed: bool
+    """Whether one of the world's posts was visited, or it has none."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class GridWorld:
+    """One map with one task."""
+
+    blocked: Array
+    """[H, W] bool, read-only."""
+    start: Cell
+    task: Task
+    rules: GridRules
+    optimum: int
+    posts: frozenset[Cell]
+    """Cells of which one must be visited before the goal counts: in a tunnel, from where its end wall is seen."""
+
+    def reset(self) -> GridState:
+        """The state before the first decision."""
+        return GridState(0, self.start, blocked=False, witnessed=self._witnesses(self.start))
+
+    def sense(self, state: GridState, rng: np.random.Generator) -> Observation:
+        """What the agent is told; with false readings, K * K numbers are drawn whatever the truth."""
+        sensor: SquareView = self.task.sensor
+        view = look(self.blocked, *state.place, sensor.radius, sensor.occlusion)
+        if sensor.false_readings:
+            view = misread(view, rng.random(view.shape) < sensor.false_readings)
+        view.setflags(write=False)
+        return Observation(state.step, state.place, view[:], state.blocked)  # who does not own it cannot unlock it
+
+    def step(self, state: GridState, action: Any, rng: np.random.Generator) -> Step:
+        """Move, or slip, or run into an obstacle.
+
+        Raises:
+            TypeError: `action` is not a `Move`.
+        """
+        if type(action) is not Move:
+            raise TypeError(f"act returned {action!r} ({type(action).__name__}); expected a Move or None")
+        move, slipped = self._slip(action, rng)
+        place, stopped = state.place, False
+        if move is not None:
+            down, right = move.delta
+            ahead = (place[0] + down, place[1] + right)
+            stopped = not passable(self.blocked, *ahead)
+            place = place if stopped else ahead
+        witnessed = state.witnessed or self._witnesses(place)
+        return Step(
+            GridState(state.step + 1, place, stopped, witnessed),
+            length=float(place != state.place),
+            collided=stopped and not slipped and self.rules.collision == "fails",
+            reached=witnessed and place == self.task.goal,
+        )
+
+    def shortest(self) -> float:
+        """Length of the optimal path on the full map [cells]; a tunnel's end wall need not be seen on it."""
+        return float(self.optimum)
+
+    def straight(self) -> float:
+        """Manhattan distance from start to goal [cells]."""
+        return float(manhattan(self.start, self.task.goal))
+
+    def covariates(self) -> Mapping[str, float]:
+        """Density, detour, dead ends and openness; see `fogbench.worlds.maps.covariates`."""
+        return covariates(self.blocked, self.straight(), self.optimum)
+
+    def _slip(self, move: Move, rng: np.random.Generator) -> tuple[Move | None, bool]:
+        if not self.rules.slip:
+            return move, False
+        slips, side = rng.random(2)  # always two numbers, so that the stream never shifts
+        if slips >= self.rules.slip:
+            return move, False
+        if self.rules.slip_to == "stay":
+            return None, True
+        return Move((move + (1 if side < 0.5 else 3)) % 4), True
+
+    def _witnesses(self, place: Cell) -> bool:
+        return not self.posts or place in self.posts

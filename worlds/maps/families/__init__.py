@@ -1,0 +1,1 @@
+"""Families of maps, one file each."""

@@ -1,0 +1,1 @@
+"""Map files of other projects, read into cells."""
