@@ -1,35 +1,89 @@
-"""Pictures of a replay: the truth beside the known map, with view, path, agent and goal."""
+"""Pixels of a replay, of the layers of its pictures: the truth beside the known map, view, path, agent and goal."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
+from PIL import Image, ImageDraw
 
-from fogbench.bench.playing.replay import Moment
-from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell
+from fogbench.worlds.picture import Cells, Dots, Layer, Lines, Picture, Squares
+from fogbench.worlds.types import Array
 
 COLOURS = np.array([[150, 150, 150], [255, 255, 255], [30, 30, 30]], np.uint8)  # [3, RGB]: unknown, free, blocked
-VIEW, PATH, AGENT, GOAL = (86, 180, 233), (0, 114, 178), (213, 94, 0), (0, 158, 115)
+LINE, VIEW, PATH, AGENT, GOAL = (30, 30, 30), (86, 180, 233), (0, 114, 178), (213, 94, 0), (0, 158, 115)
 SIDE = 360
 """Least height of a picture [pixels]."""
 
+TINT = 0.4
+"""Share of a colour that lies over cells which stay to be seen."""
 
-def truth(moment: Moment) -> Array:
-    """[H, W, 3] uint8: the map as it is, the cells that the sensor shows tinted."""
-    cells = np.where(moment.world.blocked, BLOCKED, FREE)  # [H, W]
-    picture = COLOURS[cells]  # [H, W, 3]
-    view = moment.observation.view
-    seen = np.argwhere(view != UNKNOWN) + moment.observation.place - len(view) // 2  # [n, 2]
-    rows, columns = seen[((seen >= 0) & (seen < cells.shape)).all(axis=1)].T  # [m], [m]
-    picture[rows, columns] = (0.6 * picture[rows, columns] + 0.4 * np.array(VIEW)).astype(np.uint8)
-    return _mark(picture, moment)
+Colour = tuple[int, int, int]
 
 
-def known(moment: Moment) -> Array:
-    """[H, W, 3] uint8: the map as far as the agent had seen it."""
-    return _mark(COLOURS[moment.known], moment)
+def truth(picture: Picture) -> Array:
+    """[h, w, 3] uint8: the world as it is, with what the sensor shows."""
+    canvas = Canvas(picture)
+    for layer in picture.truth:
+        canvas.lay(layer, LINE)
+    canvas.lay(picture.view, VIEW, share=TINT)
+    return canvas.marked(picture)
+
+
+def known(picture: Picture) -> Array:
+    """[h, w, 3] uint8: the world as far as the agent had seen it."""
+    canvas = Canvas(picture)
+    for layer in picture.known:
+        canvas.lay(layer, LINE)
+    return canvas.marked(picture)
+
+
+class Canvas:
+    """Pixels, one for a cell, or as many for a unit of length as lines and dots need to be seen."""
+
+    def __init__(self, picture: Picture) -> None:
+        """An empty one for a picture."""
+        layers = *picture.truth, *picture.known, *picture[3:]
+        fine = any(isinstance(layer, Lines | Dots) for layer in layers)
+        rows, columns = picture.extent
+        self.scale = max(1, -(-SIDE // max(1, int(rows)))) if fine else 1
+        self.pixels: Array = np.full((round(rows * self.scale), round(columns * self.scale), 3), 255, np.uint8)
+
+    def lay(self, layer: Layer, colour: Colour, *, share: float = 1.0, reach: int = 0) -> None:
+        """Draw a layer; a `share` below 1 tints cells, and `reach` draws so many cells around each."""
+        match layer:
+            case Cells(readings):
+                self.pixels = COLOURS[readings].repeat(self.scale, 0).repeat(self.scale, 1)
+            case Squares(at):
+                for row, column in at.tolist():
+                    self._fill(row, column, reach, colour, share)
+            case Lines() | Dots():
+                self._draw(layer, colour)
+
+    def marked(self, picture: Picture) -> Array:
+        """The pixels, with path, goal and agent; on large maps the last two are large, so that they are seen."""
+        reach = int(picture.extent[0]) // 60
+        self.lay(picture.path, PATH)
+        self.lay(picture.goal, GOAL, reach=reach)
+        self.lay(picture.agent, AGENT, reach=reach)
+        return self.pixels
+
+    def _fill(self, row: int, column: int, reach: int, colour: Colour, share: float) -> None:
+        top, left = (max(0, at - reach) * self.scale for at in (row, column))
+        block = self.pixels[top : (row + reach + 1) * self.scale, left : (column + reach + 1) * self.scale]
+        block[:] = ((1 - share) * block + share * np.array(colour)).astype(np.uint8)
+
+    def _draw(self, layer: Lines | Dots, colour: Colour) -> None:
+        image, width = Image.fromarray(self.pixels), max(1, SIDE // 120)
+        draw = ImageDraw.Draw(image)
+        for points in ((layer[0] + 0.5) * self.scale).tolist():
+            if isinstance(layer, Lines):
+                (row, column), (end_row, end_column) = points
+                draw.line((column, row, end_column, end_row), colour, width)
+            else:
+                row, column = points
+                draw.circle((column, row), 2 * width, colour)
+        self.pixels = np.array(image)
 
 
 def strip(moments: Sequence[tuple[Array, Array, int]], title: str, out: Path) -> None:
@@ -56,21 +110,6 @@ def film(pictures: Iterable[tuple[Array, Array, int]], out: Path) -> None:
     """Draw every step as one GIF, the truth beside the known map."""
     frames = [_frame(above, below) for above, below, _ in pictures]
     frames[0].save(out, save_all=True, append_images=frames[1:], duration=80, loop=0)
-
-
-def _mark(picture: Array, moment: Moment) -> Array:
-    rows, columns = np.array(moment.path).T  # [n], [n]
-    picture[rows, columns] = PATH
-    picture[_around(moment.world.task.goal, picture)] = GOAL
-    picture[_around(moment.observation.place, picture)] = AGENT
-    return picture
-
-
-def _around(cell: Cell, picture: Array) -> tuple[slice, slice]:
-    """A cell, on large maps with the cells around it, so that it is seen."""
-    row, column = cell
-    reach = len(picture) // 60
-    return np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
 
 
 def _frame(left: Array, right: Array) -> Image.Image:

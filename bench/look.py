@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -12,17 +13,17 @@ from rich.progress import track
 from threadpoolctl import threadpool_limits
 
 from fogbench.bench.playing.loop import episode_stream, episode_world
-from fogbench.bench.playing.milestones import milestones
 from fogbench.bench.playing.replay import Moment, retrace
 from fogbench.bench.playing.selection import chosen_row, chosen_rows, chosen_variant
-from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.tables import NETWORK
+from fogbench.bench.reading.variant import Entry
 from fogbench.bench.reporting.activations import activations, table
 from fogbench.bench.reporting.spaces import Decisions, embedded, spaces
 from fogbench.bench.reporting.tables import markdown
-from fogbench.planners.optimal import OptimalMoves
+from fogbench.planners import judge_of
 from fogbench.worlds.mistake import Mistake, meant, near
-from fogbench.worlds.types import Move
+from fogbench.worlds.types import Marked
 
 if TYPE_CHECKING:
     from fogbench.learned.glimpse import Glimpse
@@ -77,16 +78,21 @@ def _watch(variant: Variant, entry: Entry, row: Mapping[str, Any]) -> Iterator[t
     from fogbench.learned.glimpse import glimpse  # noqa: PLC0415  it loads PyTorch, which a wrong option need not
 
     assert entry.settings is not None
-    episode, actions = int(row["episode"]), row["actions"]
+    episode = int(row["episode"])
     agent: Any = entry.settings.start(episode_world(variant, episode).task, episode_stream(variant, "agent", episode))
-    for moment, action in zip(retrace(variant, episode, actions), actions, strict=False):  # a last one, undecided
+    for moment in islice(retrace(variant, row), int(row["steps"])):  # after a last one nothing was decided
         seen = glimpse(agent, moment.observation)
-        if seen.move != action:
+        if seen.action != moment.action:
             raise Mistake(
-                f"episode {episode} of {entry.label} in {variant.name}: got {seen.move.name} at step "
-                f"{moment.observation.step}; expected {Move(int(action)).name}, as recorded (on another machine?)."
+                f"episode {episode} of {entry.label} in {variant.name}: got {_called(seen.action)} at step "
+                f"{moment.observation.step}; expected {_called(moment.action)}, as recorded (on another machine?)."
             )
         yield moment, seen
+
+
+def _called(action: Any) -> str:
+    """An action in a line of text: the name of one that has a name."""
+    return str(getattr(action, "name", action))
 
 
 def _memory(variant: Variant, entry: Entry, row: Mapping[str, Any], out: Path) -> str:
@@ -99,7 +105,7 @@ def _memory(variant: Variant, entry: Entry, row: Mapping[str, Any], out: Path) -
         return f"{told}: it remembers nothing, so there is no figure of its memory."
     parts = {name: np.array([held[name] for _, held in watched]) for name in watched[0][1]}  # [T, any] each
     last = watched[-1][0]
-    marks = milestones(variant.family, last.world, last.path)
+    marks = variant.family.moments(last.world, last.path) if isinstance(variant.family, Marked) else {}
     activations(parts, marks, told).savefig(out, dpi=200)
     return f"{told}. Drawn in {out}\n\n{markdown(table(parts, marks))}"
 
@@ -115,22 +121,25 @@ def _spaces(variant: Variant, entry: Entry, rows: pd.DataFrame, out: Path) -> st
     told = f"{entry.label} in {variant.name}: {told}"
     chance = f"the commonest move: {100 * decisions.commonest():.1f} %"
     meaning = f"Over each: how often the nearest decision of another episode has the same optimal move ({chance})"
-    spaces(planes, decisions.moves, f"{told}\n{meaning}").savefig(out, dpi=200)
+    spaces(planes, decisions, f"{told}\n{meaning}").savefig(out, dpi=200)
     found = ", ".join(f"{name} {100 * share:.1f} %" for name, share in separable.items())
     return f"{told}. The nearest of another episode has the same optimal move: {found} ({chance}). Drawn in {out}"
 
 
 def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame) -> Decisions:
     """Every decision, or every so many, that had one optimal move on the agent's own known map."""
+    teacher = judge_of(variant.kind)
+    if teacher is None:
+        raise Mistake(f"{variant.name}: got worlds of kind {variant.kind}, of which no judge says what is right.")
     every = max(1, -(-int(rows["steps"].sum()) // DECISIONS))
     kept, count = list[tuple["Glimpse", int, int]](), 0
     for row in _tracked(cast(list[dict[str, Any]], rows.to_dict("records")), "replaying"):
-        optimal = OptimalMoves(episode_world(variant, row["episode"]).task)
+        judge = teacher(episode_world(variant, row["episode"]).task)
         for moment, seen in _watch(variant, entry, row):
-            observation = moment.observation
-            moves = optimal.update(moment.known, observation.place, len(observation.view) // 2)  # [4]
-            if moves.sum() == 1 and count % every == 0:
-                kept.append((seen, int(moves.argmax()), row["episode"]))
+            judge.see(moment.observation)
+            right = np.asarray(judge.targets())  # [A]
+            if right.sum() == 1 and count % every == 0:
+                kept.append((seen, int(right.argmax()), row["episode"]))
             count += 1
     shown = {
         "raw image": [seen.image for seen, _, _ in kept],
@@ -138,7 +147,8 @@ def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame) -> Decisions:
         "scores of the moves": [seen.scores for seen, _, _ in kept],
     }
     moves, episodes = (np.array([each[k] for each in kept], np.int64) for k in (1, 2))
-    return Decisions({name: np.array(points) for name, points in shown.items()}, moves, episodes)
+    names = kept[0][0].outputs if kept else ()
+    return Decisions({name: np.array(points) for name, points in shown.items()}, moves, episodes, names)
 
 
 def _tracked(items: Collection[Item], doing: str) -> Iterable[Item]:

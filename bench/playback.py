@@ -36,7 +36,7 @@ def replay_recorded(
     row = chosen_row(scenario, variant, agent, episode, folder)
     most = PANELS if kind == ".png" else FRAMES
     steps = {round(step) for step in np.linspace(0, row["steps"], min(most, row["steps"] + 1)).tolist()}
-    drawn, end = _pictures(retrace(variant, episode, row["actions"]), steps)
+    drawn, end = _pictures(retrace(variant, row), steps)
     verify(row, end)
     told = f"{agent} in {variant.name}, episode {episode}: {row['steps']} steps, optimum {row['shortest']:g}."
     if kind == ".png":
@@ -66,5 +66,6 @@ def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[l
         except StopIteration as stop:
             return drawn, stop.value
         if step in steps:
-            drawn.append((truth(moment), known(moment), step))
+            picture = moment.picture()
+            drawn.append((truth(picture), known(picture), step))
         step += 1

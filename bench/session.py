@@ -79,6 +79,8 @@ def check_all(paths: Sequence[Path]) -> None:
         _refuse_too_many(scenario)
         for line in chain.from_iterable(_outlook(scenario, variant) for variant in scenario.variants):
             _say(line, console)
+        for name, reason in scenario.left_out.items():
+            _say(f"  {name} is skipped: {reason}", console)
 
     _each(read_all(paths, None), console, check)
 

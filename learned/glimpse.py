@@ -1,6 +1,6 @@
 """What goes on in a network as it decides: nothing is computed for it unless somebody looks."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import torch
@@ -9,6 +9,8 @@ from fogbench.learned.dnc.dnc import DNCState
 from fogbench.learned.memory import LSTMState
 from fogbench.learned.policy import PolicyAgent
 from fogbench.worlds.types import Array, Move, Observation
+
+OUTPUTS = tuple(move.name.lower() for move in Move)
 
 
 class Glimpse(NamedTuple):
@@ -22,7 +24,9 @@ class Glimpse(NamedTuple):
     """[4], of the moves."""
     held: Mapping[str, Array]
     """What is remembered after the decision; see `held`."""
-    move: Move
+    action: Any
+    outputs: Sequence[str]
+    """What the moves are called."""
 
 
 def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
@@ -32,7 +36,7 @@ def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
         planned = agent.network.plan(inputs)
     scores = agent.decide(inputs)
     image, planned, scores = (tensor.flatten().cpu() for tensor in (inputs.image, planned, scores))
-    return Glimpse(image.numpy(), planned.numpy(), scores.numpy(), held(agent.state), Move(agent.move))
+    return Glimpse(image.numpy(), planned.numpy(), scores.numpy(), held(agent.state), Move(agent.move), OUTPUTS)
 
 
 def held(state: Any) -> dict[str, Array]:

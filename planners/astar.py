@@ -29,7 +29,7 @@ class AStar(Settings):
     def start(self, task: Task, rng: np.random.Generator) -> "AStarAgent":
         """A fresh agent; it needs no luck."""
         del rng
-        return AStarAgent(task, self.replan == "change")
+        return AStarAgent(task, eager=self.replan == "change")
 
     def parameter_bytes(self) -> int:
         """Nothing is learned."""
@@ -39,19 +39,23 @@ class AStar(Settings):
 class AStarAgent:
     """One episode of A*."""
 
-    def __init__(self, task: Task, eager: bool) -> None:
-        """Plan towards the task's goal, after every change of the known map if `eager`."""
+    def __init__(self, task: Task, *, eager: bool, known: KnownMap | None = None) -> None:
+        """Plan towards the task's goal, on a known map of its own if none is given; `eager` plans at every change."""
         self.goal: Cell = task.goal
         self.eager = eager
-        self.known = KnownMap(task.extent)
+        self.known = known or KnownMap(task.extent)
         self.route = Route(np.empty(0, np.int32), self.known.cells.shape[1])
         self.expanded = 0
 
     def act(self, observation: Observation) -> Move | None:
         """The next move of the path; on a map that false readings have closed, of a path on the current view alone."""
-        place, cells = observation.place, self.known.cells
         touched = self.known.update(observation)
-        move = None if self.eager and len(touched) else self.route.move(place, cells)
+        return self.follow(observation, replan=self.eager and len(touched) > 0)
+
+    def follow(self, observation: Observation, *, replan: bool = False) -> Move | None:
+        """The same, where the known map has the observation already; `replan` leaves the old path."""
+        place, cells = observation.place, self.known.cells
+        move = None if replan else self.route.move(place, cells)
         if move is not None:
             return move
         path, expanded = search(cells, place, self.goal)

@@ -72,7 +72,7 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 class Picture(Settings):
     """A family of one world, drawn as text: `#` blocked, `S` start, `G` goal, `P` a post, all else free."""
 
-    kind: ClassVar[str] = "grid"
+    kinds: ClassVar[tuple[str, ...]] = ("grid",)
 
     rows: tuple[str, ...]
 

@@ -1,4 +1,8 @@
-"""The ground floor: what exists, and what can be seen of it. Importing this imports no family."""
+"""The ground floor: what exists, and what can be seen of it. Importing this imports no family and no kind."""
+
+from typing import NamedTuple
+
+from fogbench.worlds.tables import named
 
 FAMILIES = {
     "blobs": "fogbench.worlds.maps.families.blobs:Blobs",
@@ -11,7 +15,37 @@ FAMILIES = {
 }
 """Map families, by the name they have under `maps:` in a scenario."""
 
+
+class Kind(NamedTuple):
+    """What the harness knows of a kind of world without importing it."""
+
+    conditions: str
+    """`module:class` of its conditions; the fields of that class are blocks of a page (`sensor`, `rules`, ...)."""
+    unit: str
+    """Of length, in the plural."""
+    extra: str = ""
+    """The extra of the project (`pip install ".[robot]"`) that its worlds need; empty: none."""
+    maps: str = ""
+    """Another kind, whose map families can make worlds of this one too; empty: no other's."""
+    rehearsal: str = ""
+    """YAML of small worlds, in which `fogbench doctor` lets every agent play once; empty: it does not."""
+
+
 KINDS = {
-    "grid": "fogbench.worlds.grid.conditions:GridConditions",
+    "grid": Kind(
+        "fogbench.worlds.grid.conditions:GridConditions",
+        unit="cells",
+        rehearsal="""
+maps: {blobs: {size: 12, obstacles: [8, 8], obstacle_size: [1, 3]}}
+sensor: {radius: 2, occlusion: true}
+budget: {steps: 40}
+""",
+    ),
 }
-"""Kinds of world, with the class that reads a scenario's `sensor`, `rules`, `tasks` and `budget` for it."""
+"""Kinds of world, by the name they have under `kind:`; other packages add theirs by the group `fogbench.kinds`."""
+
+
+def unit_of(kind: str) -> str:
+    """The unit of length of a kind of world; its name where nobody knows the kind."""
+    found: Kind | None = named(KINDS, "fogbench.kinds", kind)
+    return found.unit if found else kind

@@ -1,11 +1,18 @@
-"""The conditions of an episode that every kind of world has: which tasks are drawn, and what they may use up."""
+"""Conditions that kinds of world share: which tasks are drawn, and what an episode may use up."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Discriminator, Field, Tag
 
 from fogbench.worlds.settings import Positive, PositiveRange, Settings
 from fogbench.worlds.types import Budget
+
+
+class Conditions(Settings):
+    """The conditions of a kind of world: a subclass adds its blocks, among them `budget: BudgetSettings`."""
+
+    covariates: ClassVar[tuple[str, ...]] = ()
+    """What `World.covariates` tells of such worlds."""
 
 
 class PerDistance(Settings):
@@ -45,10 +52,17 @@ class BudgetSettings(Settings):
 
 
 class Tasks(Settings):
-    """The `tasks` block: bounds of the full-map optimum, both included; by default 1 and the task's step budget."""
+    """The `tasks` block of kinds where a step is one unit of length: which tasks are drawn."""
 
     distance: PositiveRange | None = None
+    """Bounds of the full-map optimum, both included; by default 1 and the task's step budget."""
 
     def bounds(self, budget: Budget) -> tuple[int, int]:
         """The least and the largest optimum of a task with this budget."""
         return self.distance or (1, budget.steps)
+
+    def wanted(self, unit: str) -> str:
+        """The bounds, in words for an error."""
+        if self.distance is None:
+            return "an optimum inside the step budget"
+        return f"an optimum of {self.distance[0]} to {self.distance[1]} {unit}"

@@ -10,14 +10,15 @@ Only the episode loop and the metrics ever hold a `World`. What an agent may kno
 `Observation`, told at every step. Nothing else.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum, IntEnum
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.picture import Picture
 
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 """The three values of a cell in a view and in a known map."""
@@ -70,7 +71,7 @@ class Task(NamedTuple):
     """All that an agent is told before its first decision."""
 
     kind: str
-    """`grid`, `graph` or `robot`."""
+    """A name of `fogbench.worlds.KINDS`, or of a kind that another package adds."""
     goal: Any
     """A place of that kind (robot: `(x, y)` [m])."""
     sensor: Any
@@ -101,6 +102,13 @@ class Step(NamedTuple):
     """Length travelled, in the unit of the kind (cells, edges, m)."""
     collided: bool
     reached: bool
+
+
+class Known(Protocol):
+    """**Protocol:** the world as far as one agent has seen it."""
+
+    def update(self, observation: Observation) -> Any:
+        """Take in one more observation."""
 
 
 class Agent(Protocol):
@@ -156,18 +164,35 @@ class World(Protocol):
         """Length that the optimal path would have if nothing were in the way."""
 
     def covariates(self) -> Mapping[str, float]:
-        """How difficult the map and the task are, by the names of `COVARIATES`."""
+        """How difficult the map and the task are, by names that are the same for all worlds of the kind."""
 
+    def remaining(self, state: Any) -> float:
+        """Length of the optimal path from `state` to the goal on the full map."""
 
-COVARIATES = ("density", "detour", "dead_ends", "openness")
-"""What `World.covariates` tells; see `fogbench.worlds.maps.covariates`."""
+    def known(self) -> Known:
+        """What an agent knows that has seen nothing."""
+
+    def action(self, *numbers: float) -> Any:
+        """The action that a record has as these numbers."""
+
+    def picture(self, known: Any, observation: Observation, path: Sequence[Any]) -> Picture:
+        """What a moment looks like.
+
+        Args:
+            known: made by `known`, and updated with all observations so far.
+            observation: the last of them.
+            path: the places so far, this one last.
+        """
 
 
 class MapFamily(Protocol):
-    """**Protocol:** the frozen settings of a family of maps; its fields are its block under `maps:`."""
+    """**Protocol:** the frozen settings of a family of maps; its fields are its block under `maps:`.
 
-    kind: ClassVar[str]
-    """The kind of its worlds, a name of `fogbench.worlds.KINDS`."""
+    A family may also be `Marked`.
+    """
+
+    kinds: ClassVar[tuple[str, ...]]
+    """The kinds that its worlds can be, names of `fogbench.worlds.KINDS`; the first, unless a page says another."""
 
     def sample(self, rng: np.random.Generator, episode: int, conditions: Any) -> World:
         """The world of an episode under `conditions` (an object of the class that `fogbench.worlds.KINDS` names).
@@ -175,7 +200,7 @@ class MapFamily(Protocol):
         Args:
             rng: all the luck of this map and task.
             episode: counts from 0; a family with a list of tasks takes the task of that number.
-            conditions: sensor, rules, bounds of the task, budget.
+            conditions: all that a scenario says but for maps and agents: sensor, rules, bounds of the task, budget.
 
         Raises:
             MapError: no such world can be made; the text is one line.
@@ -189,6 +214,19 @@ class MapFamily(Protocol):
 
     def extent(self) -> tuple[float, ...] | None:
         """The `Task.extent` of all its worlds; None: they differ, or a file has to be read to know."""
+
+
+@runtime_checkable
+class Marked(Protocol):
+    """**Protocol:** a map family that knows moments of an episode at which something changes."""
+
+    def moments(self, world: Any, path: Sequence[Any]) -> Mapping[str, int]:
+        """Steps to mark, by name.
+
+        Args:
+            world: of the episode.
+            path: the place of each decision, and the last.
+        """
 
 
 class MapError(Mistake):

@@ -1,5 +1,6 @@
 """The raw record of one agent in one world, and the one schema that it is stored with."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Annotated
 
@@ -31,13 +32,16 @@ class Episode:
     shortest: float
     """Length of the optimum on the full map."""
     reference_length: float | None
-    """Length that A* on the map seen so far travelled in the same world; None where it did not reach the goal."""
+    """Length that the kind's reference, which sees the same, travelled in the same world; None where it did not reach
+    the goal, or there is none."""
     judged: int
     """Decisions taken while the agent's own known map had a path to the goal."""
     wrong_decisions: int
     """Judged decisions that no optimal plan on the agent's own known map would take."""
     strict_wrong: int
-    """Judged decisions that differ from those of A* on the agent's own known map."""
+    """Judged decisions that differ from those of the kind's reference on the agent's own known map."""
+    remaining: tuple[float, ...]
+    """Length of the optimal path to the goal on the full map, before each decision."""
     setup_seconds: float
     decision_seconds: Seconds
     """Seconds of each decision, in order."""
@@ -50,10 +54,8 @@ class Episode:
     """The actions one after the other, flat: enough to replay the episode exactly."""
     detail: str
     """One line on what went wrong, where something did; else empty."""
-    density: float
-    detour: float
-    dead_ends: float
-    openness: float
+    covariates: Mapping[str, float]
+    """How difficult the world is, by the names of its kind; each is a column of its own."""
     workers: int
     """Worker processes that ran side by side; it belongs to the timings."""
     agent_key: str
@@ -72,5 +74,16 @@ _ARROW = {
     Seconds: pa.list_(pa.float32()),
 }
 
-SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode)])  # type: ignore[index]  # or text
-"""The columns of `episodes/*.parquet`."""
+SCHEMA = pa.schema([(field.name, _ARROW[field.type]) for field in fields(Episode) if field.name != "covariates"])  # type: ignore[index]  # or text
+"""The columns of `episodes/*.parquet` that all kinds of world have."""
+
+LATER = frozenset({"remaining"})
+"""Columns that a store of an earlier version lacks."""
+
+
+def table(rows: Sequence[Episode], covariates: Sequence[str]) -> pa.Table:
+    """Rows as they are stored, with the covariates of all kinds of their scenario."""
+    own = {name: [getattr(row, name) for row in rows] for name in SCHEMA.names}
+    hard = {name: [row.covariates.get(name) for row in rows] for name in covariates}
+    schema = pa.schema([*SCHEMA, *((name, pa.float64()) for name in covariates)])
+    return pa.Table.from_pydict({**own, **hard}, schema=schema)

@@ -6,11 +6,12 @@ from hashlib import sha256
 from pathlib import Path
 
 from fogbench import planners, worlds
-from fogbench.bench.reading.scenario import Entry, Variant
+from fogbench.bench.reading.scenario import Variant
+from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
 
-DECIDE = ("judge.py", "loop.py")
+DECIDE = ("loop.py",)
 """Files of the harness that decide what an episode is."""
 
 

@@ -3,23 +3,30 @@
 from collections.abc import Generator, Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from fogbench.bench.playing.loop import episode_stream, episode_world
 from fogbench.bench.reading.scenario import Variant
-from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Array, Cell, Move, Observation, Outcome
+from fogbench.worlds.picture import Picture
+from fogbench.worlds.types import Known, Observation, Outcome, World
 
 
 class Moment(NamedTuple):
     """One step of an episode, as the world and the agent's own known map saw it."""
 
-    world: GridWorld
+    world: World
     observation: Observation
-    known: Array
-    """[H, W] uint8, the known map with this observation in it; overwritten by the next moment."""
-    path: list[Cell]
-    """Cells visited so far, this one last; grows with the next moment."""
+    known: Known
+    """The known map with this observation in it; overwritten by the next moment."""
+    path: list[Any]
+    """Places visited so far, this one last; grows with the next moment."""
+    action: Any
+    """What was done then; None at the last."""
+
+    def picture(self) -> Picture:
+        """What it looks like."""
+        return self.world.picture(self.known, self.observation, self.path)
 
 
 class End(NamedTuple):
@@ -31,28 +38,27 @@ class End(NamedTuple):
     collided: bool
 
 
-def retrace(variant: Variant, episode: int, actions: Array) -> Generator[Moment, None, End]:
-    """Walk through an episode; returns (as a generator does) its `End`.
+def retrace(variant: Variant, row: Mapping[str, Any]) -> Generator[Moment, None, End]:
+    """Walk through a recorded episode; returns (as a generator does) its `End`.
 
     Args:
         variant: of the same scenario that was run.
-        episode: its number.
-        actions: [n] float, the recorded actions.
+        row: at least `episode`, `steps` and `actions`.
     """
-    world = episode_world(variant, episode)
-    assert isinstance(world, GridWorld)
-    luck = episode_stream(variant, "luck", episode)
-    known, path = KnownMap(world.task.extent), list[Cell]()
+    episode, steps = int(row["episode"]), int(row["steps"])
+    world, luck = episode_world(variant, episode), episode_stream(variant, "luck", episode)
+    numbers = np.asarray(row["actions"], np.float64).reshape(steps, -1) if steps else ()  # [steps, any]
+    known, path = world.known(), list[Any]()
     state, length, reached, collided = world.reset(), 0.0, False, False
-    for action in [*actions, None]:
+    for action in (*(world.action(*each) for each in numbers), None):
         observation = world.sense(state, luck)
         known.update(observation)
         path.append(observation.place)
-        yield Moment(world, observation, known.cells, path)
+        yield Moment(world, observation, known, path, action)
         if action is not None:
-            state, moved, collided, reached = world.step(state, Move(int(action)), luck)
+            state, moved, collided, reached = world.step(state, action, luck)
             length += moved
-    return End(len(actions), length, reached, collided)
+    return End(steps, length, reached, collided)
 
 
 def verify(row: Mapping[str, Any], end: End) -> None:

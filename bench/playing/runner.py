@@ -85,7 +85,8 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
         StoreError: the store is broken, or cannot be written.
         Mistake: another run records there.
     """
-    with recording(folder) as recorder:
+    covariates = dict.fromkeys(name for variant in scenario.variants for name in variant.conditions.covariates)
+    with recording(folder, tuple(covariates)) as recorder:
         done = recorded(folder, scenario)
         counts = {pair: len(episodes) for pair, episodes in done.items()}
         totals = _totals(scenario)

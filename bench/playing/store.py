@@ -13,7 +13,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fogbench.bench.playing.episode import SCHEMA, Episode
+from fogbench.bench.playing.episode import LATER, SCHEMA, Episode, table
 from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds import files
@@ -119,9 +119,14 @@ def _parts(folder: Path) -> list[Path]:
 def _load(part: Path, columns: list[str]) -> pa.Table:
     try:
         with pq.ParquetFile(part) as file:
-            if not file.schema_arrow.equals(SCHEMA):
+            there = file.schema_arrow
+            lacking = [name for name in columns if name not in there.names or there.field(name) != SCHEMA.field(name)]
+            if set(lacking) - LATER:
                 raise StoreError(f"{part}: got the columns of another version; expected those of this one.")
-            return file.read(columns)
+            table = file.read([name for name in columns if name not in lacking])
+            for name in lacking:
+                table = table.append_column(SCHEMA.field(name), pa.nulls(len(table), SCHEMA.field(name).type))
+            return table
     except (pa.ArrowException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise StoreError(f"{part}: got a broken file ({reason}); expected a Parquet file of episodes.") from None
@@ -130,8 +135,9 @@ def _load(part: Path, columns: list[str]) -> pa.Table:
 class Recorder:
     """Appends episodes to a store. A part is written whole or not at all, and never touched again."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, covariates: Sequence[str]) -> None:
         """Go on after the last part that is there."""
+        self.covariates = covariates
         self.episodes = folder / "episodes"
         self.part = max((int(part.stem) for part in _parts(folder) if part.stem.isdecimal()), default=0) + 1
         self.rows: list[Episode] = []
@@ -154,9 +160,8 @@ class Recorder:
     def flush(self) -> None:
         """Write what is held back."""
         if self.rows:
-            columns = {name: [getattr(row, name) for row in self.rows] for name in SCHEMA.names}
             sink = pa.BufferOutputStream()
-            pq.write_table(pa.Table.from_pydict(columns, schema=SCHEMA), sink)
+            pq.write_table(table(self.rows, self.covariates), sink)
             put(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
             # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
             self.part += 1
@@ -165,8 +170,12 @@ class Recorder:
 
 
 @contextmanager
-def recording(folder: Path) -> Iterator[Recorder]:
+def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
     """Open a store for writing, alone; what killed runs left half written is removed.
+
+    Args:
+        folder: of the store.
+        covariates: of all kinds of world that will be recorded; they are columns of every part.
 
     Raises:
         Mistake: another run has it open.
@@ -180,7 +189,7 @@ def recording(folder: Path) -> Iterator[Recorder]:
             raise _unwritable(folder, error) from None
         for leftover in (folder / "episodes").glob(".*.parquet"):
             leftover.unlink()
-        recorder = Recorder(folder)
+        recorder = Recorder(folder, covariates)
         try:
             yield recorder
         finally:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from fogbench.bench.playing import loop
+from fogbench.bench.playing import play as playing
 from fogbench.bench.playing.episode import Episode
-from fogbench.bench.reading.scenario import Entry, Scenario, Variant, read_scenario
+from fogbench.bench.reading.scenario import Scenario, Variant, read_scenario
+from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.types import Outcome
 
 _TOLD: ContextVar[tuple[str, Path, int]] = ContextVar("_TOLD")
@@ -30,17 +31,17 @@ def begin(text: str, path: Path, workers: int) -> None:
     _TOLD.set((text, path, workers))
     threadpool_limits(1)
     with suppress(Exception):  # the first task meets the error again, and can report it
-        loop.prepare(_scenario(text, path))
+        playing.prepare(_scenario(text, path))
 
 
 def play(variant: str, agent: str, episode: int) -> Episode:
-    """Play an episode of an agent, both by name; see `fogbench.bench.playing.loop.play`."""
-    return loop.play(*_find(variant, agent), episode, _TOLD.get()[2])
+    """Play an episode of an agent, both by name; see `fogbench.bench.playing.play.play`."""
+    return playing.play(*_find(variant, agent), episode, _TOLD.get()[2])
 
 
 def lose(variant: str, agent: str, episode: int, outcome: Outcome, detail: str) -> Episode:
-    """The record of an episode that took its process with it; see `fogbench.bench.playing.loop.lost`."""
-    return loop.lost(*_find(variant, agent), episode, _TOLD.get()[2], outcome, detail)
+    """The record of an episode that took its process with it; see `fogbench.bench.playing.play.lost`."""
+    return playing.lost(*_find(variant, agent), episode, _TOLD.get()[2], outcome, detail)
 
 
 def _find(variant_name: str, label: str) -> tuple[Scenario, Variant, Entry]:

@@ -1,9 +1,8 @@
 """The variants of a file: each laid over the rest, and what is wrong with all of them told once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from fogbench.bench.reading.page import VARIED
 from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.worlds.mistake import near, one_of
 
@@ -11,25 +10,45 @@ ALONE = "all"
 """The name of the one variant of a file without variants."""
 
 
-def pages(page: Value, faults: list[Fault], varied: Sequence[str] = VARIED) -> dict[str, Value]:
-    """The whole page of each variant, by its name; only the keys in `varied` may differ."""
+def pages(
+    page: Value, faults: list[Fault], varied: Sequence[str], blocks_of: Callable[[Value], Sequence[str]]
+) -> dict[str, Value]:
+    """The whole page of each variant, by its name.
+
+    Args:
+        page: of the file.
+        faults: what is wrong with the variants is added to them.
+        varied: keys that may differ, beside the blocks of the kinds of world in the file.
+        blocks_of: the blocks that the kind of a whole page reads.
+    """
     variants = page.fields().get("variants")
     overlays = variants.fields() if variants else {}
+    own = {name: blocks_of(_lay(page, overlay)) for name, overlay in overlays.items()}
+    blocks = list(dict.fromkeys(block for each in own.values() for block in each))
+    place = varied.index("kind") + 1
+    known = [*varied[:place], *blocks, *varied[place:]]
     for overlay in overlays.values():
-        unknown = overlay.fields().keys() - set(varied)
-        faults.extend(overlay.wrong_key(key, one_of(varied), near(key, varied)) for key in unknown)
-    return {name: _lay(page, overlay, varied) for name, overlay in overlays.items()} or {ALONE: page}
+        unknown = overlay.fields().keys() - set(known)
+        faults.extend(overlay.wrong_key(key, one_of(known), near(key, known)) for key in unknown)
+    fitting = {name: _without(page, set(blocks) - set(own[name])) for name in overlays}
+    said = {name: _without(overlay, overlay.fields().keys() - set(known)) for name, overlay in overlays.items()}
+    return {name: _lay(fitting[name], said[name]) for name in overlays} or {ALONE: page}
 
 
-def _lay(page: Value, overlay: Value, varied: Sequence[str]) -> Value:
-    """The page of one variant: another map family replaces the one of the page, with all its settings."""
-    fields = {key: value for key, value in overlay.fields().items() if key in varied}
+def _without(mapping: Value, keys: Iterable[str]) -> Value:
+    """A mapping without some keys: blocks that are for other kinds, or keys that are unknown, and told."""
+    left_out = set(keys)
+    return replace(mapping, content={key: value for key, value in mapping.fields().items() if key not in left_out})
+
+
+def _lay(page: Value, overlay: Value) -> Value:
+    """One variant laid over the page: another map family replaces the one of the page, with all its settings."""
     here, there = (
-        mapping["maps"].fields().keys() if "maps" in mapping else set() for mapping in (page.fields(), fields)
+        mapping["maps"].fields().keys() if "maps" in mapping else set() for mapping in (page.fields(), overlay.fields())
     )
     if there and not here & there:
-        page = replace(page, content={key: value for key, value in page.fields().items() if key != "maps"})
-    return merge(page, replace(overlay, content=fields))
+        page = _without(page, {"maps"})
+    return merge(page, replace(overlay, content=overlay.fields()))
 
 
 def settle(rows: list[list[Fault]]) -> list[Fault]:

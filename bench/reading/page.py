@@ -1,8 +1,9 @@
-"""The keys of a scenario file."""
+"""The keys of a scenario file: its own, and the blocks that the kind of its worlds reads."""
 
+from functools import cache
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, create_model
 
 from fogbench.worlds.settings import Positive, Settings
 
@@ -26,6 +27,12 @@ Number = Annotated[float, Field(ge=0, allow_inf_nan=True), BeforeValidator(_infi
 
 Numbers = Annotated[dict[str, dict[str, Number]], Field(default_factory=dict)]
 """By the agent's label and the variant's name."""
+
+
+class Open(Settings):
+    """A page that may have any key."""
+
+    model_config = ConfigDict(extra="allow")
 
 
 class Published(Settings):
@@ -52,10 +59,8 @@ class Page(Settings):
     """One sentence."""
     maps: dict[str, Any]
     """One map family with its settings."""
-    sensor: Any = None
-    rules: Any = None
-    tasks: Any = None
-    budget: Any = None
+    kind: str | None = None
+    """Kind of the worlds on these maps; by default the first that the family can make."""
     variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
     """Name to what differs from the rest: mappings merge, lists and scalars replace. Each is a row of the tables."""
     agents: Annotated[list[Any], Field(min_length=1)]
@@ -69,8 +74,24 @@ class Page(Settings):
     published: Published | None = None
 
 
-CONDITIONS = ("sensor", "rules", "tasks", "budget")
-"""Keys that the kind of world reads."""
-
 VARIED = tuple(key for key in Page.model_fields if key not in ("name", "about", "variants", "published"))
-"""Keys that a variant may have."""
+"""Keys that a variant may have, beside the blocks of its kind."""
+
+
+def blocks(conditions: type[Settings] | None) -> tuple[str, ...]:
+    """The keys of a page that a kind of world reads: the fields of its conditions; none of a kind that is missing."""
+    return tuple(conditions.model_fields) if conditions else ()
+
+
+@cache
+def with_blocks(keys: type[Settings], conditions: type[Settings] | None) -> type[Settings]:
+    """The keys of a page with the blocks of a kind of world after `kind`, where anything may stand.
+
+    Of a kind that is missing nobody knows the blocks, so any key may stand there.
+    """
+    fields: dict[str, Any] = {}
+    for key, field in keys.model_fields.items():
+        fields[key] = (field.annotation, field)
+        if key == "kind":
+            fields |= dict.fromkeys(blocks(conditions), (Any, None))
+    return create_model(keys.__name__, __base__=Settings if conditions else Open, __doc__=keys.__doc__, **fields)

@@ -8,12 +8,17 @@ from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+from typing import TypeVar
 
 from fogbench.bench.reading.blocks import raised
 from fogbench.bench.reading.tables import EXTRAS, Table
+from fogbench.worlds import KINDS, Kind
 from fogbench.worlds.mistake import Unavailable, near, one_of
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
+from fogbench.worlds.tables import registered
+
+Thing = TypeVar("Thing")
 
 
 class PluginError(ValueError):
@@ -52,18 +57,37 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
         PluginError: there is none, it cannot be imported, or it is not a class of settings for this.
         Unavailable: it needs a package that is not installed; the text says which, and how to get it.
     """
-    place, _, class_name = target.rpartition(":")
-    module = _import(name, place)
-    found = getattr(module, class_name, None)
-    if not isinstance(found, type):
-        classes = [key for key, thing in vars(module).items() if isinstance(thing, type)]
-        raise PluginError(f"a class of {Path(place).name}, which has no {class_name}", near(class_name, classes))
+    found = _thing(name, target, type, "class")
     lacks = [member for member in table.members if not hasattr(found, member)]
     if not issubclass(found, Settings):
         raise PluginError(f"a class derived from fogbench.Settings, with {', '.join(table.members)}")
     if lacks:
         raise PluginError(f"a class with {', '.join(table.members)}; it lacks {', '.join(lacks)}")
     return found
+
+
+def load_kind(name: str) -> Kind:
+    """A kind of world by its name.
+
+    Raises:
+        PluginError: there is none.
+        Unavailable: its package lacks another, which is not installed.
+    """
+    others = registered("fogbench.kinds")
+    if name not in {**KINDS, **others}:
+        raise PluginError(one_of([*KINDS, *others]), near(name, [*KINDS, *others]))
+    return KINDS[name] if name in KINDS else _thing(name, others[name], Kind, "kind of world")
+
+
+def _thing(name: str, target: str, sort: type[Thing], told: str) -> Thing:
+    """What stands at a target, of some sort."""
+    place, _, own = target.rpartition(":")
+    module = _import(name, place)
+    found = getattr(module, own, None)
+    if isinstance(found, sort):
+        return found
+    others = [key for key, thing in vars(module).items() if isinstance(thing, sort)]
+    raise PluginError(f"a {told} of {Path(place).name}, which has no {own}", near(own, others))
 
 
 def _import(name: str, place: str) -> ModuleType:

@@ -1,18 +1,20 @@
 """A recipe: one YAML file with a scenario's keys for its worlds, a network, and how it is trained."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
 from fogbench.bench.reading.document import parse
+from fogbench.bench.reading.finding import blocks_of, opened
 from fogbench.bench.reading.overlays import pages, settle
-from fogbench.bench.reading.page import CONDITIONS, FileName
+from fogbench.bench.reading.page import FileName
 from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.bench.reading.scenario import wrong
 from fogbench.bench.reading.tables import NETWORK
-from fogbench.bench.reading.worlds import Reading, opened
+from fogbench.bench.reading.worlds import Reading
 from fogbench.learned.training.recipe import Lesson, Recipe, Training, Worlds
 from fogbench.worlds.mistake import Mistake, near, one_of
 from fogbench.worlds.types import MapFamily
@@ -20,8 +22,8 @@ from fogbench.worlds.types import MapFamily
 if TYPE_CHECKING:
     from fogbench.learned.policy import Policy
 
-VARIED = ("maps", *CONDITIONS)
-"""Keys that a variant may have."""
+VARIED = ("maps", "kind")
+"""Keys that a variant may have, beside the blocks of its kind."""
 
 ELSEWHERE = {"seed": "the recipe's own seed, which fixes the weights too", "device": "--device on the command line"}
 """Settings of a network that a recipe does not give with it."""
@@ -38,10 +40,8 @@ class RecipePage(Training):
     """A learned policy with its settings; a `checkpoint` among them is where it starts from."""
     maps: dict[str, Any]
     """One map family with its settings."""
-    sensor: Any = None
-    rules: Any = None
-    tasks: Any = None
-    budget: Any = None
+    kind: str | None = None
+    """Kind of the worlds on these maps; by default the first that the family can make."""
     variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
     """Where the network is tried while it learns: name to what differs from the rest; by default the rest itself."""
     lessons: Annotated[list[str], Field(default_factory=list)]
@@ -114,7 +114,7 @@ def read_recipe(text: str, path: Path) -> Recipe:
     page = parse(text, faults)
     if page is None:
         raise wrong(faults, path)
-    rows = pages(page, faults, VARIED)
+    rows = pages(page, faults, VARIED, partial(blocks_of, folder=path.parent))
     recipe = RecipeReading(page, rows, path.parent)
     variants = {name: Reading(RecipePage, row, path.parent) for name, row in rows.items()}
     faults += settle([recipe.faults, *(variant.faults for variant in variants.values())])

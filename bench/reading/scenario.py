@@ -1,28 +1,19 @@
 """A scenario: one YAML file, read into worlds to sample and agents to start."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from fogbench.bench.reading.document import parse
+from fogbench.bench.reading.finding import blocks_of
 from fogbench.bench.reading.overlays import pages, settle, unknown_variants
+from fogbench.bench.reading.page import VARIED
 from fogbench.bench.reading.positions import Fault
-from fogbench.bench.reading.variant import VariantReading
+from fogbench.bench.reading.variant import Entry, VariantReading
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import AgentSettings, MapFamily
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Entry:
-    """One agent of a variant."""
-
-    label: str
-    """Its name in tables; unique in its variant."""
-    target: str
-    """Where its class is: `module:class`, or `/absolute/file.py:class` for a plug-in."""
-    settings: AgentSettings | None
-    skipped: str
-    """Why it does not run here; empty if it does."""
+from fogbench.worlds.types import MapFamily
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,9 +21,11 @@ class Variant:
     """One row of a scenario's tables."""
 
     name: str
+    kind: str
+    """A name of `fogbench.worlds.KINDS`, or of a kind that another package adds."""
     family: MapFamily
     conditions: Any
-    """An object of the class that `fogbench.worlds.KINDS` names for `family.kind`."""
+    """An object of the class that its kind names."""
     agents: tuple[Entry, ...]
     reference: str
     """Label of the agent that the others are compared with in pairs."""
@@ -53,6 +46,8 @@ class Scenario:
     """`{"source": ..., metric: {agent label: {variant: number}}}`; empty if nothing was published."""
     skipped: str
     """Why none of it runs here (a map file's environment variable is not set); empty if it does."""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    """Why some of its variants cannot be played here (a package is missing), by their names."""
 
 
 class ScenarioError(Mistake):
@@ -90,7 +85,8 @@ def read_scenario(text: str, path: Path) -> Scenario:
     page = parse(text, faults)
     if page is None:
         raise wrong(faults, path)
-    rows = {name: VariantReading(row, path.parent) for name, row in pages(page, faults).items()}
+    whole = pages(page, faults, VARIED, partial(blocks_of, folder=path.parent))
+    rows = {name: VariantReading(row, path.parent) for name, row in whole.items()}
     faults += settle([row.faults for row in rows.values()]) + unknown_variants(page, list(rows))
     if faults:
         raise wrong(faults, path)
@@ -99,8 +95,10 @@ def read_scenario(text: str, path: Path) -> Scenario:
     unset = next((value.unset for value in page.below() if value.unset), "")
     if unset:
         return Scenario(path, text, name, about, (), published, f"environment variable {unset} is not set")
-    variants = tuple(_variant(name, row) for name, row in rows.items())
-    return Scenario(path, text, name, about, variants, published, "")
+    left_out = {name: row.skipped for name, row in rows.items() if row.skipped}
+    variants = tuple(_variant(name, row) for name, row in rows.items() if name not in left_out)
+    skipped = "" if variants else next(iter(left_out.values()))
+    return Scenario(path, text, name, about, variants, published, skipped, left_out)
 
 
 def wrong(faults: list[Fault], path: Path) -> ScenarioError:
@@ -113,6 +111,5 @@ def _variant(name: str, row: VariantReading) -> Variant:
     """A variant of which everything could be read."""
     assert row.page is not None
     assert row.family is not None
-    agents = tuple(Entry(*agent) for agent in row.agents)
-    reference = row.page.reference or agents[0].label
-    return Variant(name, row.family, row.conditions, agents, reference, row.page.episodes, row.page.seed)
+    page, reference = row.page, row.page.reference or row.agents[0].label
+    return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, page.episodes, page.seed)

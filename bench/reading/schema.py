@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from fogbench.bench.reading.page import CONDITIONS, VARIED, Page
-from fogbench.bench.reading.plugins import PluginError, load
+from fogbench.bench.reading.page import VARIED, Page, blocks
+from fogbench.bench.reading.plugins import PluginError, load, load_kind
 from fogbench.bench.reading.shapes import Lenient, Schema
 from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable
@@ -24,11 +24,13 @@ def schema() -> Schema:
 
     Only `name` is required: what else a file needs may be spread over its variants.
     """
-    known = Page.model_fields
-    fields: dict[str, Any] = {key: (field.annotation, field) for key, field in known.items()} | _conditions()
+    known, read = Page.model_fields, _blocks()
+    fields: dict[str, Any] = {key: (field.annotation, field) for key, field in known.items()} | read
+    fields["kind"] = (Literal.__getitem__(tuple(KIND.targets())) | None, known["kind"])
     fields["maps"] = (_one_of_many("Maps", _classes(FAMILY)), known["maps"])
     fields["agents"] = (_agents(), known["agents"])
-    variant = _model("Variant", {key: field for key, field in fields.items() if key in VARIED}, Settings)
+    varied = (*VARIED, *read)
+    variant = _model("Variant", {key: field for key, field in fields.items() if key in varied}, Settings)
     fields["variants"] = (GenericAlias(dict, (str, variant | None)), known["variants"])
     page = _model("Scenario", fields, Page).model_json_schema(schema_generator=Lenient)
     return {"$schema": DRAFT, **_relax(page), "required": ["name"]}
@@ -42,10 +44,12 @@ def _agents() -> Any:
     return GenericAlias(list, (names | Annotated[str, Field(pattern=":")] | _one_of_many("Agent", labelled),))
 
 
-def _conditions() -> dict[str, Any]:
+def _blocks() -> dict[str, Any]:
     """Each block as any kind of world reads it."""
-    fields = [kind.model_fields for kind in _classes(KIND).values()]
-    return {key: (reduce(or_, [field[key].annotation for field in fields if key in field]), ...) for key in CONDITIONS}
+    kinds = list(_classes(KIND).values())
+    names = dict.fromkeys(block for kind in kinds for block in blocks(kind))
+    fields = [kind.model_fields for kind in kinds]
+    return {name: (reduce(or_, [each[name].annotation for each in fields if name in each]), ...) for name in names}
 
 
 def _one_of_many(title: str, classes: dict[str, type[BaseModel]]) -> Any:
@@ -60,7 +64,7 @@ def _classes(table: Table) -> dict[str, type[BaseModel]]:
     found: dict[str, type[BaseModel]] = {}
     for name, target in table.targets().items():
         try:
-            found[name] = load(table, name, target)
+            found[name] = load(table, name, load_kind(name).conditions if table is KIND else target)
         except (PluginError, Unavailable):
             continue
     return found

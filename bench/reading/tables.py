@@ -2,14 +2,13 @@
 
 import ast
 from collections.abc import Mapping
-from functools import cache
-from importlib.metadata import entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 from fogbench import learned, planners
 from fogbench.worlds import FAMILIES, KINDS
+from fogbench.worlds.tables import registered
 
 
 class Table(NamedTuple):
@@ -28,23 +27,17 @@ class Table(NamedTuple):
         return {**self.shipped, **{name: target for name, target in others.items() if name not in self.shipped}}
 
 
-FAMILY = Table(FAMILIES, ("fogbench.families",), ("kind", "sample", "words", "tasks", "extent"))
+FAMILY = Table(FAMILIES, ("fogbench.families",), ("kinds", "sample", "words", "tasks", "extent"))
 AGENT = Table(
     {**planners.PLANNERS, **learned.LEARNED},
     ("fogbench.planners", "fogbench.learned"),
     ("kinds", "start", "parameter_bytes"),
 )
 NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "frame"))
-KIND = Table(KINDS, (), ())
+KIND = Table({name: kind.conditions for name, kind in KINDS.items()}, ("fogbench.kinds",), ("covariates",))
 
-EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}
-"""The extra of the project that an agent needs."""
-
-
-@cache
-def registered(group: str) -> dict[str, str]:
-    """The entry points of a group: name to `module:class`. They are looked for once, which takes a while."""
-    return {point.name: point.value for point in entry_points(group=group)}
+EXTRAS = {**planners.EXTRAS, **learned.EXTRAS, **{name: kind.extra for name, kind in KINDS.items() if kind.extra}}
+"""The extra of the project that an agent or a kind of world needs."""
 
 
 def families() -> dict[str, str]:

@@ -1,8 +1,8 @@
 """The reading of one variant: its map family, its conditions, its agents."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 from fogbench.bench.reading.page import Page
 from fogbench.bench.reading.positions import Value
@@ -12,13 +12,17 @@ from fogbench.worlds.mistake import near, one_of
 from fogbench.worlds.types import AgentSettings
 
 
-class Listed(NamedTuple):
-    """One agent of the list."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Entry:
+    """One agent of a variant."""
 
     label: str
+    """Its name in tables; unique in its variant."""
     target: str
+    """Where its class is: `module:class`, or `/absolute/file.py:class` for a plug-in."""
     settings: AgentSettings | None
     skipped: str
+    """Why it does not run here; empty if it does."""
 
 
 class VariantReading(Reading[Page]):
@@ -36,11 +40,11 @@ class VariantReading(Reading[Page]):
         """The numbers to print beside the measured ones."""
         return self.page.published.model_dump(exclude_unset=True) if self.page and self.page.published else {}
 
-    def _agents(self, agents: Value | None) -> list[Listed]:
+    def _agents(self, agents: Value | None) -> tuple[Entry, ...]:
         items = agents.content if agents and isinstance(agents.content, list) else []
-        return [listed for item in items if not item.unset and (listed := self._agent(item))]
+        return tuple(entry for item in items if not item.unset and (entry := self._agent(item)))
 
-    def _agent(self, item: Value) -> Listed | None:
+    def _agent(self, item: Value) -> Entry | None:
         named = self.named(item, "the name of an agent, or one name with its settings")
         if named is None:
             return None
@@ -48,11 +52,11 @@ class VariantReading(Reading[Page]):
         label, block = self._label(name, item, block)
         place, found, missing = self.find(AGENT, name, wrong)
         if found is None:
-            return Listed(label, place, None, missing) if missing else None
+            return Entry(label, place, None, missing) if missing else None
         settings = cast(AgentSettings | None, self.block(found, block))
         kinds = cast(AgentSettings, found).kinds
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
-        return Listed(label, place, settings, skipped) if settings else None
+        return Entry(label, place, settings, skipped) if settings else None
 
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""

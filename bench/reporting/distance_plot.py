@@ -13,12 +13,10 @@ from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.curves import Bin, by_distance, distance_bins
 from fogbench.bench.reporting.panels import Look, Looks, arranged, legend, percent
 from fogbench.bench.reporting.tables import scaled
+from fogbench.worlds import unit_of
 
 Frames = Mapping[str, pd.DataFrame]
 """The episodes of each variant."""
-
-LENGTHS = {"grid": "cells", "graph": "edges", "robot": "m"}
-"""The unit of length, by the kind of world."""
 
 LEAST_MEMORY = 256
 """The axis of memory is logarithmic above, so that agents that carry nothing have a place too [bytes]."""
@@ -104,5 +102,5 @@ def _sizes(axes: Axes) -> None:
 
 
 def _unit(frames: Frames) -> str:
-    kinds = dict.fromkeys(kind for episodes in frames.values() for kind in episodes["kind"].unique())
-    return f"goal distance [{', '.join(LENGTHS.get(kind, kind) for kind in kinds)}]"
+    kinds = [str(kind) for episodes in frames.values() for kind in episodes["kind"].unique()]
+    return f"goal distance [{', '.join(dict.fromkeys(map(unit_of, kinds)))}]"

@@ -3,11 +3,12 @@
 Words used here
     cell       the episodes of one agent in one variant: rows of `fogbench.bench.playing.episode`
     optimum    the shortest path on the full map
-    A*         A* on the map seen so far, the same-information reference that is recorded with every episode
+    reference  the same-information reference of the kind of world, which is recorded with every episode; its name, such
+               as A*, stands in place of `{reference}` where a metric is told
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,6 +44,13 @@ class Metric:
     over: Over
     about: str
     measure: Callable[[pd.DataFrame], Estimate]
+
+    def of(self, reference: str) -> "Metric":
+        """The same, told of a reference by its name."""
+        heading, about, words = (
+            text.format(reference=reference) for text in (self.heading, self.about, self.over.words)
+        )
+        return replace(self, heading=heading, about=about, over=self.over._replace(words=words))
 
     def __call__(self, episodes: pd.DataFrame) -> Estimate:
         """The answer, from those of the episodes that the metric is over."""
@@ -106,7 +114,7 @@ def _count(outcome: Outcome) -> Callable[[pd.DataFrame], Estimate]:
 ALL = Over("all episodes", everything)
 DECIDED = Over("episodes with a decision", decided)
 OWN = Over("own successes", reached)
-BOTH = Over("own successes that A* solved too", lambda cell: reached(cell) & cell["reference_length"].notna())
+BOTH = Over("own successes that {reference} solved too", lambda cell: reached(cell) & cell["reference_length"].notna())
 
 METRICS = (
     Metric("success", "success", "%", "higher", 1, ALL, "Episodes that reached the goal.",
@@ -115,13 +123,14 @@ METRICS = (
            lambda cell: mean(spl(cell))),
     Metric("path_ratio", "ratio to optimum", "", "lower", 3, OWN,
            "Mean of length / length of the shortest path on the full map.", _ratio("shortest")),
-    Metric("reference_ratio", "ratio to A*", "", "lower", 3, BOTH,
-           "Mean of length / length of A* on the map seen so far, in the same world.", _ratio("reference_length")),
+    Metric("reference_ratio", "ratio to {reference}", "", "lower", 3, BOTH,
+           "Mean of length / length of {reference} on the map seen so far, in the same world.",
+           _ratio("reference_length")),
     Metric("test_error", "test error", "", "lower", 3, DECIDED,
            "Share of decisions that no optimal plan on the agent's own known map takes; without a plan none is judged.",
            _errors("wrong_decisions")),
     Metric("strict_error", "strict error", "", "lower", 3, DECIDED,
-           "Share of the same decisions that differ from those of A* on the agent's own known map.",
+           "Share of the same decisions that differ from those of {reference} on the agent's own known map.",
            _errors("strict_wrong")),
     Metric("decision_p50", "decision p50", "ms", "lower", 3, DECIDED, "Median time of a decision.", _decisions(50)),
     Metric("decision_p95", "decision p95", "ms", "lower", 3, DECIDED, "95th percentile of the same.", _decisions(95)),
@@ -135,8 +144,6 @@ METRICS = (
     Metric("steps", "steps", "steps", "lower", 1, OWN, "Mean number of decisions carried out.", _mean("steps")),
     Metric("search_nodes", "search nodes", "nodes", "lower", 0, DECIDED,
            "Mean number of nodes expanded or tree vertices added in an episode.", _mean("search_nodes")),
-    Metric("budget_fit", "budget fit", "%", "", 1, ALL, "Tasks whose optimum is no longer than the step budget.",
-           lambda cell: share(cell["shortest"] <= cell["budget_steps"]).times(100)),
     *(Metric(f"outcome_{outcome.name.lower()}", outcome.name, "episodes", "", 0, ALL, outcome.value, _count(outcome))
       for outcome in Outcome),
 )  # fmt: skip

@@ -17,6 +17,7 @@ from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.curves import Steps, success_by_seconds, success_by_steps
 from fogbench.bench.reporting.distance_plot import Frames, against_distance
 from fogbench.bench.reporting.panels import MARKS, STYLE, Looks, legend, looks_of, panels_of, percent
+from fogbench.bench.reporting.words import reference_name
 from fogbench.worlds.types import Array
 
 FAR = 1.5
@@ -49,7 +50,7 @@ def draw_figures(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -
     with rc_context(STYLE):
         return {
             "success.png": success(table, played),
-            "path_ratio.png": path_ratio(table, played),
+            "path_ratio.png": path_ratio(table, played, reference_name(scenario)),
             "success_by_steps.png": success_against_steps(frames, played),
             "success_by_seconds.png": success_against_seconds(frames, played),
             "by_distance.png": against_distance(frames, played, scenario),
@@ -64,12 +65,12 @@ def success(table: pd.DataFrame, looks: Looks) -> Figure:
     return figure
 
 
-def path_ratio(table: pd.DataFrame, looks: Looks) -> Figure:
-    """Path ratio to the full-map optimum and to A* on the map seen so far, with intervals, by variant.
+def path_ratio(table: pd.DataFrame, looks: Looks, reference: str) -> Figure:
+    """Path ratio to the full-map optimum and to the reference on the map seen so far, with intervals, by variant.
 
     Who is far above most (a random walk) is off the axis, with an arrow in its place.
     """
-    metrics = {"path_ratio": "optimum", "reference_ratio": "A* on the map seen"}
+    metrics = {"path_ratio": "optimum", "reference_ratio": f"{reference} on the map seen"}
     figure, panels = _dots(table, tuple(metrics), looks)
     for axes, (metric, other) in zip(panels, metrics.items(), strict=True):
         axes.axhline(1, color="#888888", linewidth=0.8, zorder=1)

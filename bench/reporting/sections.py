@@ -11,9 +11,8 @@ from fogbench.bench.reporting.pairs import COMPARISONS
 from fogbench.bench.reporting.statistics import Estimate
 from fogbench.bench.reporting.tables import NOTHING, Lines, heading, markdown, written
 from fogbench.bench.reporting.trainings import trainings
+from fogbench.bench.reporting.words import reference_name
 from fogbench.worlds.types import Outcome
-
-ASKED = {metric.name: metric for metric in (*METRICS, *COMPARISONS)}
 
 HEADLINE = (
     "success", "path_ratio", "reference_ratio", "test_error", "decision_p50", "decision_p95", "memory_max", "p_holm",
@@ -32,16 +31,21 @@ Found = Mapping[tuple[str, str, str], Estimate]
 """The estimates of a summary by variant, agent and name of the metric."""
 
 
+def asked(scenario: Scenario) -> dict[str, Metric]:
+    """All that is asked, by name, in the words of the kinds of world of a scenario."""
+    return {metric.name: metric.of(reference_name(scenario)) for metric in (*METRICS, *COMPARISONS)}
+
+
 def headline(table: pd.DataFrame, scenario: Scenario, *, short: bool = False) -> Lines:
     """The results, a row for each agent of each variant; the published numbers stand beside.
 
     `short` leaves out all intervals and published numbers but those of success: so much fits a terminal.
     """
-    found = _found(table)
+    found, metrics = _found(table), asked(scenario)
     full = {name for name in HEADLINE if name == "success" or not short}
     headings = ["variant", "agent", "n"]
     for name in HEADLINE:
-        headings += [heading(ASKED[name]), *(["published"] if name in full & scenario.published.keys() else [])]
+        headings += [heading(metrics[name]), *(["published"] if name in full & scenario.published.keys() else [])]
     rows = [_row(variant, agent, found, scenario, full) for variant, agent in _places(scenario)]
     return Lines(headings, rows)
 
@@ -71,7 +75,8 @@ def failures(frame: pd.DataFrame) -> Lines:
 
 def skipped(scenario: Scenario) -> Lines:
     """Who did not run, and why."""
-    rows = [
+    rows = [[name, NOTHING, _brief(reason)] for name, reason in scenario.left_out.items()]
+    rows += [
         [variant.name, entry.label, _brief(scenario.skipped or entry.skipped)]
         for variant in scenario.variants
         for entry in variant.agents
@@ -80,12 +85,12 @@ def skipped(scenario: Scenario) -> Lines:
     return Lines(["variant", "agent", "reason"], rows)
 
 
-def columns() -> Lines:
+def columns(scenario: Scenario) -> Lines:
     """What is asked, in which unit, and of which episodes."""
     rows = [
         [metric.heading, f"`{metric.name}`", metric.unit or NOTHING, metric.better or NOTHING, metric.over.words,
          metric.about]
-        for metric in ASKED.values()
+        for metric in asked(scenario).values()
     ]  # fmt: skip
     return Lines(["column", "in `summary.csv`", "unit", "better", "over", "what it says"], rows)
 
@@ -111,7 +116,7 @@ def page(
         if lines.rows:
             parts += [f"## {title}\n", markdown(lines)]
     parts += ["## How it was measured\n", "".join(f"- {fact}\n" for fact in _facts(run))]
-    parts += ["## What the columns say\n", markdown(columns())]
+    parts += ["## What the columns say\n", markdown(columns(scenario))]
     return "\n".join(parts)
 
 
@@ -132,10 +137,11 @@ def _places(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 def _row(variant: str, agent: str, found: Found, scenario: Scenario, full: set[str]) -> list[str]:
     row = [variant, agent, str(found.get((variant, agent, "success"), Estimate()).n or NOTHING)]
-    for name in HEADLINE:
-        row.append(written(found.get((variant, agent, name), Estimate()), ASKED[name], interval=name in full))
-        if name in full & scenario.published.keys():
-            row.append(_published(scenario, ASKED[name], variant, agent))
+    for name, metric in asked(scenario).items():
+        if name in HEADLINE:
+            row.append(written(found.get((variant, agent, name), Estimate()), metric, interval=name in full))
+            if name in full & scenario.published.keys():
+                row.append(_published(scenario, metric, variant, agent))
     return row
 
 

@@ -1,6 +1,6 @@
 """How well the inputs, the plans and the scores of a network tell decisions apart: in a number, and by t-SNE."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,9 +8,9 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from scipy.spatial.distance import cdist
 
-from fogbench.bench.reporting.panels import COLOURS, MARKS, STYLE, Look, legend
+from fogbench.bench.reporting.panels import STYLE, legend, look_of
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Array, Move
+from fogbench.worlds.types import Array
 
 PERPLEXITY = 30
 """Neighbours that t-SNE gives each point; where there are few points, a third of them."""
@@ -25,6 +25,8 @@ class Decisions(NamedTuple):
     """[n] int, the optimal move."""
     episodes: Array
     """[n] int, where each comes from."""
+    names: Sequence[str]
+    """What the moves are called."""
 
     def commonest(self) -> float:
         """The share of the commonest move: what a guess that sees nothing would reach."""
@@ -71,21 +73,21 @@ def embedded(points: Array) -> Array:
     return plane
 
 
-def spaces(planes: Iterable[tuple[str, Array, float]], moves: Array, title: str) -> Figure:
+def spaces(planes: Iterable[tuple[str, Array, float]], decisions: Decisions, title: str) -> Figure:
     """A panel for each space, its points coloured by the optimal move, its separability in its title.
 
     Args:
         planes: name, points [n, 2] and separability of each.
-        moves: [n] int.
+        decisions: what the points are.
         title: one line.
     """
-    planes = list(planes)
-    looks = {move.name.lower(): Look(COLOURS[move], MARKS[move], "") for move in Move if (moves == move).any()}
+    planes, shown = list(planes), np.unique(decisions.moves).tolist()
+    looks = {decisions.names[move]: look_of(move)._replace(linestyle="") for move in shown}
     with rc_context(STYLE):
         figure = Figure(figsize=(3.2 * len(planes), 4.0), layout="constrained")
         for axes, (name, points, separable) in zip(figure.subplots(1, len(planes)), planes, strict=True):
-            for move, look in looks.items():
-                x, y = points[moves == Move[move.upper()]].T
+            for move, look in zip(shown, looks.values(), strict=True):
+                x, y = points[decisions.moves == move].T
                 axes.scatter(x, y, s=9, color=look.color, marker=look.marker, alpha=0.6, linewidths=0)
             axes.set(xticks=[], yticks=[], title=f"{name}: {100 * separable:.1f} %")
         legend(figure, looks, lines=False)

@@ -15,6 +15,7 @@ from fogbench.bench.reporting.metrics import METRICS, Metric
 from fogbench.bench.reporting.pairs import COMPARISONS, pair, successes
 from fogbench.bench.reporting.statistics import Estimate, difference
 from fogbench.bench.reporting.tables import NOTHING, Lines, heading, number, written
+from fogbench.bench.reporting.words import reference_name
 
 AVERAGED = tuple(
     metric for metric in METRICS if metric.name in {"success", "path_ratio", "reference_ratio", "test_error"}
@@ -33,6 +34,7 @@ def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> L
         scenario: says who plays against whom.
     """
     values = table.set_index(["variant", "agent", "metric"])["value"]
+    told = [metric.of(reference_name(scenario)) for metric in (*AVERAGED, DIFFERENCE)]
     rows = []
     for variant in scenario.variants:
         cells = frame[frame["variant"] == variant.name]
@@ -41,7 +43,7 @@ def trainings(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> L
                        for metric in AVERAGED]  # fmt: skip
             apart = _difference(cells, labels, variant.reference)
             rows.append([variant.name, network, str(len(labels)), *spreads, written(apart, DIFFERENCE)])
-    return Lines(["variant", "network", "trainings", *map(heading, (*AVERAGED, DIFFERENCE))], rows)
+    return Lines(["variant", "network", "trainings", *map(heading, told)], rows)
 
 
 def network_of(label: str) -> str:

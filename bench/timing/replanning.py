@@ -14,7 +14,7 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from fogbench.bench.playing.loop import play
+from fogbench.bench.playing.play import play
 from fogbench.bench.reading.scenario import read_scenario
 
 TEXT = """

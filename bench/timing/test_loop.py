@@ -4,7 +4,8 @@ from itertools import count
 
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from fogbench.bench.playing.loop import Record, episode_world, play, start_and_roll
+from fogbench.bench.playing.loop import Record, episode_world, start_and_roll
+from fogbench.bench.playing.play import play
 from fogbench.bench.reading.scenario import read_scenario
 from fogbench.bench.shipped import find
 from fogbench.planners.random_walk import RandomWalk

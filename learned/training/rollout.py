@@ -18,10 +18,8 @@ from torch import Tensor
 from fogbench.learned.encoding.grid import SIGHT, STILL, Known, encode, gather
 from fogbench.learned.network import Network, rows
 from fogbench.learned.policy import Policy
-from fogbench.planners.optimal import OptimalMoves, nearer
+from fogbench.planners.grid_judge import GridJudge
 from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.maps.cells import KnownMap
-from fogbench.worlds.maps.distances import distances
 from fogbench.worlds.types import BLOCKED, DELTAS, FREE, Array, Move, Observation
 
 BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
@@ -101,7 +99,7 @@ def _known(episodes: Sequence["Episode"], stitched: bool) -> Known:
         [episode.observation for episode in episodes],
         [episode.world.task.goal for episode in episodes],
         [episode.move for episode in episodes],
-        [episode.known.cells for episode in episodes] if stitched else None,
+        [episode.judge.known.cells for episode in episodes] if stitched else None,
     )
 
 
@@ -122,18 +120,19 @@ class Episode:
         self.world = world
         self.luck = luck
         self.state = world.reset()
-        self.known = KnownMap(world.task.extent)
-        self.optimal = OptimalMoves(world.task)
+        self.judge = self.judge_of(world)
         self.move = STILL
         self.reached = False
 
     def look(self) -> Array:
         """Sense, and write what is seen into the known map: which moves are optimal there, [4] bool."""
         self.observation = self.world.sense(self.state, self.luck)
-        self.known.update(self.observation)
-        reach = len(self.observation.view) // 2
-        optimal: Array = self.optimal.update(self.known.cells, self.observation.place, reach)
-        return optimal
+        self.judge.see(self.observation)
+        return self.judge.targets()
+
+    def judge_of(self, world: GridWorld) -> GridJudge:
+        """What says which moves are right."""
+        return GridJudge(world.task)
 
     def step(self, move: int) -> bool:
         """Do a move; whether the episode goes on."""
@@ -148,14 +147,6 @@ class Hindsight(Episode):
     Which of equals turns out better depends on what lies out of sight; over many maps it tells where walls are likely.
     """
 
-    def __init__(self, world: GridWorld, luck: np.random.Generator) -> None:
-        """Before the first step."""
-        super().__init__(world, luck)
-        self.distance = distances(world.blocked, world.task.goal, (-1, -1))  # [H, W], on the full map
-
-    def look(self) -> Array:
-        """Sense, and write what is seen into the known map: which moves count, [4] bool."""
-        optimal = super().look()
-        task, place = self.world.task, self.observation.place
-        best: Array = optimal & nearer(self.world.blocked, self.distance, place, task.goal)
-        return best if best.any() else optimal
+    def judge_of(self, world: GridWorld) -> GridJudge:
+        """One that knows the world."""
+        return GridJudge.hindsight(world)

@@ -20,7 +20,7 @@ import json, sys
 from pathlib import Path
 import torch
 from numba.core.registry import CPUDispatcher
-from fogbench.bench.playing.loop import play
+from fogbench.bench.playing.play import play
 from fogbench.bench.reading.scenario import read_scenario
 from fogbench.bench.shipped import find
 from fogbench.learned.dnc.dnc import DNC

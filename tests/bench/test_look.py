@@ -9,9 +9,10 @@ import pytest
 from PIL import Image
 
 from fogbench.bench.look import look_inside
-from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.store import recording
-from fogbench.bench.reading.scenario import Entry, Scenario
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Move, Outcome
 
@@ -36,7 +37,7 @@ def tunnels(make: Callable[..., Scenario]) -> Scenario:
 def played(tunnels: Scenario, tmp_path: Path) -> Scenario:
     """Four episodes of each in `long`, recorded in `tmp_path/store`; the fourth of MACN hung."""
     variant = tunnels.variants[1]
-    with recording(tmp_path / "store") as recorder:
+    with recording(tmp_path / "store", ()) as recorder:
         for entry in variant.agents[:4]:
             for episode in range(3):
                 recorder.append(play(tunnels, variant, entry, episode, 1))
@@ -77,7 +78,7 @@ def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_p
     memory, _ = look_inside(played, "long", "macn", 3, tmp_path / "store").splitlines()
     assert memory == "macn in long, episode 3: no decision is recorded, so there is no figure of its memory."
     short = tunnels.variants[0]
-    with recording(tmp_path / "few") as recorder:
+    with recording(tmp_path / "few", ()) as recorder:
         recorder.append(play(tunnels, short, short.agents[3], 0, 1))
     _, spaces = look_inside(tunnels, None, "vin", 0, tmp_path / "few").splitlines()
     assert spaces.endswith(
@@ -134,7 +135,7 @@ def test_a_record_of_other_decisions_is_refused(tunnels: Scenario, tmp_path: Pat
     row = play(tunnels, variant, variant.agents[3], 0, 1)
     move = Move(int(row.actions[1]))
     other = Move((move + 1) % 4)
-    with recording(tmp_path / "store") as recorder:
+    with recording(tmp_path / "store", ()) as recorder:
         recorder.append(replace(row, actions=(row.actions[0], float(other), *row.actions[2:])))
     with pytest.raises(Mistake) as caught:
         look_inside(tunnels, None, "vin", 0, tmp_path / "store")

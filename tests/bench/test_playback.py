@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fogbench.bench.playback import replay_recorded
-from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.store import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
@@ -22,7 +22,7 @@ def played(make: Make, tmp_path: Path) -> Scenario:
     scenario = make()
     variant = scenario.variants[0]
     astar = variant.agents[0]
-    with recording(tmp_path / "store") as recorder:
+    with recording(tmp_path / "store", ()) as recorder:
         recorder.append(play(scenario, variant, astar, 0, 1))
         recorder.append(lost(scenario, variant, astar, 1, 1, Outcome.HUNG, "no [answer]"))
         recorder.append(replace(play(scenario, variant, astar, 2, 1), agent_key="old"))

@@ -70,7 +70,7 @@ def test_workers_change_no_action(make: Any, tmp_path: Path) -> None:
         pd.testing.assert_frame_equal(one, facts(scenario, tmp_path / f"{workers}", workers), check_exact=True)
     variants = {variant.name: variant for variant in scenario.variants}
     for row in one.to_dict("records"):
-        steps = retrace(variants[row["variant"]], row["episode"], row["actions"])
+        steps = retrace(variants[row["variant"]], row)
         verify(row, ended(steps))
 
 

@@ -10,7 +10,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from fogbench.worlds import FAMILIES, KINDS
 from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.types import COVARIATES, MapError, MapFamily
+from fogbench.worlds.maps.covariates import COVARIATES
+from fogbench.worlds.types import MapError, MapFamily
 
 Conditions = Callable[..., Any]
 
@@ -40,16 +41,17 @@ def independent(world: GridWorld) -> float:
     return float(lengths[flat[world.task.goal]])
 
 
-def test_the_kind_exists(family: MapFamily) -> None:
-    """A family draws worlds of a kind that there is."""
-    assert family.kind in KINDS
+def test_the_kinds_exist(family: MapFamily) -> None:
+    """A family makes worlds of kinds that there are, of one at least."""
+    assert family.kinds
+    assert set(family.kinds) <= set(KINDS)
 
 
 def test_worlds_keep_the_protocol(family: MapFamily, conditions: Conditions) -> None:
     """A task says what the conditions say; start and goal are apart, free, and on the map."""
     for world in sampled(family, conditions):
         task = world.task
-        assert (task.kind, task.extent) == (family.kind, world.blocked.shape)
+        assert (task.kind, task.extent) == (family.kinds[0], world.blocked.shape)
         assert family.extent() in (None, task.extent)
         assert (world.reset().place, task.goal) == (world.start, task.goal)
         assert world.start != task.goal

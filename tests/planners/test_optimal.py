@@ -6,12 +6,14 @@ from typing import Any
 import networkx as nx
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fogbench.planners.optimal import OptimalMoves
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.maps.families.blobs import Blobs
-from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move
+from fogbench.worlds.types import BLOCKED, DELTAS, FREE, Array, Cell, Move
 
 MAPS = Blobs(size=8, obstacles=(3, 9), obstacle_size=(1, 3))
 NOISE = {"false_readings": 0.1, "slip": 0.2, "collision": "blocked"}
@@ -34,11 +36,12 @@ def test_moves_are_those_of_all_shortest_paths(conditions: Callable[..., Any], f
     for seed in range(8):
         rng = np.random.default_rng(seed)
         world = MAPS.sample(rng, 0, conditions(steps=30, distance=(4, 20), **{"collision": "blocked", **fields}))
-        known, optimal, state = KnownMap(world.task.extent), OptimalMoves(world.task), world.reset()
+        known, state = KnownMap(world.task.extent), world.reset()
+        optimal = OptimalMoves(world.task.goal, known.cells)
         for _ in range(30):
             observation = world.sense(state, rng)
-            known.update(observation)
-            moves = optimal.update(known.cells, observation.place, len(observation.view) // 2)
+            optimal.see(known.update(observation))
+            moves = optimal.moves(observation.place)
             assert set(np.flatnonzero(moves).tolist()) == best(known.cells, observation.place, world.task.goal)
             several, undefined = several + (moves.sum() > 1), undefined + (not moves.any())
             state = world.step(state, Move(rng.integers(4)), rng).state
@@ -49,7 +52,24 @@ def test_moves_are_those_of_all_shortest_paths(conditions: Callable[..., Any], f
 def test_around_a_wall_that_is_seen(draw: Callable[..., GridWorld]) -> None:
     """Before a wall in view the moves along it are optimal, not the one into it; at the goal none is needed."""
     world = draw("...\nS#G\n...")
-    optimal, known = OptimalMoves(world.task), KnownMap(world.task.extent)
-    known.update(world.sense(world.reset(), np.random.default_rng(0)))
-    assert optimal.update(known.cells, world.start, 1).tolist() == [True, False, True, False]
-    assert not optimal.update(known.cells, world.task.goal, 1).any()
+    known = KnownMap(world.task.extent)
+    optimal = OptimalMoves(world.task.goal, known.cells)
+    optimal.see(known.update(world.sense(world.reset(), np.random.default_rng(0))))
+    assert optimal.moves(world.start).tolist() == [True, False, True, False]
+    assert not optimal.moves(world.task.goal).any()
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_kept_distances_are_those_of_a_new_search(seed: int) -> None:
+    """Whatever readings change, anywhere and back again, the moves are those of a search from nothing."""
+    rng = np.random.default_rng(seed)
+    known = np.zeros((6, 7), np.uint8)
+    optimal, goal = OptimalMoves((5, 6), known), (5, 6)
+    for _ in range(30):
+        seen = np.unique(rng.integers(known.size, size=5))
+        readings = rng.choice(np.array([FREE, FREE, BLOCKED], np.uint8), size=len(seen))
+        touched = seen[known.flat[seen] != readings]
+        known.flat[seen] = readings
+        optimal.see(touched.astype(np.int32))
+        place = tuple(np.argwhere(known != BLOCKED)[rng.integers((known != BLOCKED).sum())].tolist())
+        assert optimal.moves(place).tolist() == OptimalMoves(goal, known).moves(place).tolist()

@@ -140,7 +140,7 @@ def seal(folder: Path) -> None:
 def test_kernels_are_kept_beside_their_source(folder: Path) -> None:
     """Where that can be written, the compiled forms are on disk after the first call, and read by the next process."""
     result = end(start(folder))
-    assert result["file"] == str(folder / "fogbench" / "worlds" / "belief.py")
+    assert result["file"] == str(folder / "fogbench" / "worlds" / "maps" / "cells.py")
     assert Path(result["folder"]).parent == folder / "fogbench" / "worlds" / "__pycache__"
     assert told(result) == COLD
     assert forms(Path(result["folder"])) == FORMS
@@ -213,8 +213,8 @@ def test_a_user_without_rights_gets_the_same_where_nothing_can_be_written(
 def test_a_user_without_rights_cannot_write_into_the_installation(folder: Path) -> None:
     """The script that takes the rights away does take them away."""
     seal(folder)
-    process = start(folder, WITHOUT_RIGHTS + "open('worlds/mine', 'w')")
-    assert "PermissionError: [Errno 13] Permission denied: 'worlds/mine'" in process.communicate()[1]
+    process = start(folder, WITHOUT_RIGHTS + "open('fogbench/worlds/mine', 'w')")
+    assert "PermissionError: [Errno 13] Permission denied: 'fogbench/worlds/mine'" in process.communicate()[1]
 
 
 @pytest.mark.parametrize(

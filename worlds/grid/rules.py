@@ -2,7 +2,11 @@
 
 from typing import Literal
 
+import numpy as np
+
+from fogbench.worlds.maps.sight import hidden
 from fogbench.worlds.settings import Positive, Probability, Settings
+from fogbench.worlds.types import Array, Cell
 
 
 class SquareView(Settings):
@@ -14,6 +18,14 @@ class SquareView(Settings):
     """Whether blocked cells hide what lies behind them."""
     false_readings: Probability = 0.0
     """Probability that a seen cell reads free for blocked or blocked for free, drawn afresh at every look."""
+
+    def shows(self, blocked: Array, cell: Cell, places: Array) -> Array:
+        """From which of the cells in `places` [n, 2] it shows `cell` of a map [H, W]: [n] bool."""
+        shown: Array = np.abs(places - cell).max(1, initial=0) <= self.radius
+        for k in np.flatnonzero(shown).tolist() if self.occlusion else ():
+            row, column = places[k].tolist()
+            shown[k] = not hidden(blocked, row, column, cell[0] - row, cell[1] - column)
+        return shown
 
 
 class GridRules(Settings):

@@ -1,16 +1,19 @@
 """The grid world: a map of free and blocked cells, four moves, a square view."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from fogbench.worlds.grid.rules import GridRules, SquareView
-from fogbench.worlds.maps.cells import manhattan, passable
+from fogbench.worlds.maps.cells import KnownMap, manhattan, passable
 from fogbench.worlds.maps.covariates import covariates
+from fogbench.worlds.maps.distances import distances
 from fogbench.worlds.maps.sight import look, misread
-from fogbench.worlds.types import Array, Cell, Move, Observation, Step, Task
+from fogbench.worlds.picture import Cells, Picture, Squares
+from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Move, Observation, Step, Task
 
 
 class GridState(NamedTuple):
@@ -24,7 +27,7 @@ class GridState(NamedTuple):
     """Whether one of the world's posts was visited, or it has none."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class GridWorld:
     """One map with one task."""
 
@@ -85,6 +88,34 @@ class GridWorld:
         """Density, detour, dead ends and openness; see `fogbench.worlds.maps.covariates`."""
         return covariates(self.blocked, self.straight(), self.optimum)
 
+    def remaining(self, state: GridState) -> float:
+        """Length of the optimal path from here on the full map [cells]."""
+        return float(to_goal(self)[state.place])
+
+    def known(self) -> KnownMap:
+        """The map of an agent that has seen nothing."""
+        return KnownMap(self.task.extent)
+
+    def action(self, *numbers: float) -> Move:
+        """The move of a recorded number."""
+        (number,) = numbers
+        return Move(int(number))
+
+    def picture(self, known: KnownMap, observation: Observation, path: Sequence[Cell]) -> Picture:
+        """A moment in cells: the cells that the sensor shows, those visited, the agent's and the goal's."""
+        view = observation.view
+        seen = np.argwhere(view != UNKNOWN) + observation.place - len(view) // 2  # [n, 2]
+        inside = ((seen >= 0) & (seen < self.blocked.shape)).all(1)
+        return Picture(
+            extent=(float(self.blocked.shape[0]), float(self.blocked.shape[1])),
+            truth=(Cells(np.where(self.blocked, BLOCKED, FREE).astype(np.uint8)),),
+            known=(Cells(known.cells.copy()),),
+            view=Squares(seen[inside]),
+            path=Squares(np.array(path)),
+            agent=Squares(np.array([observation.place])),
+            goal=Squares(np.array([self.task.goal])),
+        )
+
     def _slip(self, move: Move, rng: np.random.Generator) -> tuple[Move | None, bool]:
         if not self.rules.slip:
             return move, False
@@ -97,3 +128,9 @@ class GridWorld:
 
     def _witnesses(self, place: Cell) -> bool:
         return not self.posts or place in self.posts
+
+
+@lru_cache(maxsize=4)
+def to_goal(world: GridWorld) -> Array:
+    """[H, W] int32, distances to the goal on the full map; those of the last few worlds are kept."""
+    return distances(world.blocked, world.task.goal, (-1, -1))

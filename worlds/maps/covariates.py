@@ -3,7 +3,10 @@
 import numpy as np
 
 from fogbench.worlds.kernel import kernel
-from fogbench.worlds.types import COVARIATES, Array
+from fogbench.worlds.types import Array
+
+COVARIATES = ("density", "detour", "dead_ends", "openness")
+"""What `covariates` tells."""
 
 
 def covariates(blocked: Array, straight: float, optimum: float) -> dict[str, float]:

@@ -39,3 +39,16 @@ def distances(blocked: Array, source: Cell, target: Cell) -> Array:
                 queue[tail] = i * width + j
                 tail += 1
     return distance
+
+
+@kernel
+def nearer(distance: Array, place: Cell) -> Array:
+    """Which of the four neighbours of `place` are nearer by `distance` [H, W], as `distances` tells it: [4] bool."""
+    found = np.zeros(4, np.bool_)
+    if distance[place] == FAR:
+        return found
+    for move in range(4):
+        r, c = place[0] + DELTAS[move][0], place[1] + DELTAS[move][1]
+        inside = 0 <= r < distance.shape[0] and 0 <= c < distance.shape[1]
+        found[move] = inside and distance[r, c] == distance[place] - 1  # a blocked cell is FAR
+    return found

@@ -1,16 +1,12 @@
-"""From a map to a world: start and goal are drawn, connected, and inside the bounds."""
+"""From a map of cells to a world: start and goal are drawn, connected, and inside the bounds."""
 
 from abc import ABC, abstractmethod
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.maps.cells import manhattan
-from fogbench.worlds.maps.distances import FAR, distances
 from fogbench.worlds.settings import Positive, Settings
-from fogbench.worlds.types import Array, Cell, MapError, Task
+from fogbench.worlds.types import Array, Cell, MapError, World
 
 MAPS = 1000
 """Maps drawn before a family gives up."""
@@ -27,18 +23,45 @@ class Layout(NamedTuple):
     start: Cell | None = None
     goal: Cell | None = None
     posts: frozenset[Cell] = frozenset()
+    """Cells of which one must be visited before the goal counts; empty: it always counts."""
 
 
-class DrawnMaps(Settings, ABC):
-    """A family that draws a fresh grid for every episode; a subclass says how."""
+class CellConditions(Protocol):
+    """**Protocol:** conditions of any kind whose worlds can be made from a map of cells."""
 
-    kind: ClassVar[str] = "grid"
+    def world(self, layout: Layout, start: Cell, goal: Cell) -> World | None:
+        """The world of one task, or None where it does not fit these conditions."""
+
+    def shows(self, blocked: Array, cell: Cell, places: Array) -> Array:
+        """From which of the cells in `places` [n, 2] the sensor shows `cell` of a map [H, W]: [n] bool."""
+
+    def wanted(self) -> str:
+        """Which tasks fit, in words for an error."""
+
+
+class CellMaps(Settings):
+    """A family of maps of cells."""
+
+    kinds: ClassVar[tuple[str, ...]] = ("grid",)
+
+    def tasks(self, conditions: CellConditions) -> int | None:
+        """Any number."""
+        del conditions
+        return None
+
+    def extent(self) -> Cell | None:
+        """It differs, or a file has to be read to know."""
+        return None
+
+
+class DrawnMaps(CellMaps, ABC):
+    """A family that draws a fresh map for every episode; a subclass says how."""
 
     @abstractmethod
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """One map, with or without a task."""
 
-    def sample(self, rng: np.random.Generator, episode: int, conditions: GridConditions) -> GridWorld:
+    def sample(self, rng: np.random.Generator, episode: int, conditions: CellConditions) -> World:
         """The first drawn map on which a task fits the conditions; `episode` plays no part.
 
         Raises:
@@ -49,16 +72,7 @@ class DrawnMaps(Settings, ABC):
             found = fit(self.draw(rng, conditions), conditions, rng)
             if found is not None:
                 return found
-        raise MapError(f"{type(self).__name__}: no task with {wanted(conditions)} was found on {MAPS} maps")
-
-    def tasks(self, conditions: GridConditions) -> int | None:
-        """Any number."""
-        del conditions
-        return None
-
-    def extent(self) -> Cell | None:
-        """It differs."""
-        return None
+        raise MapError(f"{type(self).__name__}: no task with {conditions.wanted()} was found on {MAPS} maps")
 
 
 class SquareMaps(DrawnMaps):
@@ -72,36 +86,15 @@ class SquareMaps(DrawnMaps):
         return self.size, self.size
 
 
-def fit(layout: Layout, conditions: GridConditions, rng: np.random.Generator) -> GridWorld | None:
+def fit(layout: Layout, conditions: CellConditions, rng: np.random.Generator) -> World | None:
     """A world on a layout: with its own task, or with start and goal uniform over free cells; None if none fits."""
     if layout.start is not None and layout.goal is not None:
-        return world(layout, layout.start, layout.goal, conditions)
+        return conditions.world(layout, layout.start, layout.goal)
     free = np.flatnonzero(~layout.blocked)  # [n]
     width = layout.blocked.shape[1]
     for _ in range(PAIRS if len(free) > 1 else 0):
         a, b = free[rng.integers(len(free), size=2)].tolist()
-        found = world(layout, divmod(a, width), divmod(b, width), conditions)
+        found = conditions.world(layout, divmod(a, width), divmod(b, width))
         if found is not None:
             return found
     return None
-
-
-def world(layout: Layout, start: Cell, goal: Cell, conditions: GridConditions) -> GridWorld | None:
-    """The world of one task, or None where it is not connected or its optimum is out of bounds."""
-    budget = conditions.budget.over(manhattan(start, goal))
-    least, most = conditions.tasks.bounds(budget)
-    if start == goal or manhattan(start, goal) > most or layout.blocked[start] or layout.blocked[goal]:
-        return None
-    layout.blocked.setflags(write=False)
-    optimum = int(distances(layout.blocked, start, goal)[goal])
-    if optimum == FAR or not least <= optimum <= most:
-        return None
-    height, width = layout.blocked.shape
-    task = Task("grid", goal, conditions.sensor, budget, (height, width))
-    return GridWorld(layout.blocked, start, task, conditions.rules, optimum, layout.posts)
-
-
-def wanted(conditions: GridConditions) -> str:
-    """The bounds of a task, in words for an error."""
-    distance = conditions.tasks.distance
-    return f"an optimum of {distance[0]} to {distance[1]} cells" if distance else "an optimum inside the step budget"

@@ -24,7 +24,8 @@ import numpy as np
 from minigrid.envs.empty import EmptyEnv
 from turns import Round, Turns, per_second
 
-from fogbench.bench.playing.loop import Record, episode_world, play, start_and_roll
+from fogbench.bench.playing.loop import Record, episode_world, start_and_roll
+from fogbench.bench.playing.play import play
 from fogbench.bench.reading.scenario import read_scenario
 from fogbench.bench.shipped import find
 from fogbench.planners.random_walk import RandomWalk

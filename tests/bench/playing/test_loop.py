@@ -11,8 +11,10 @@ import pytest
 
 from fogbench.bench.playing.episode import Episode
 from fogbench.bench.playing.keys import agent_key, world_key
-from fogbench.bench.playing.loop import episode_world, lost, play
-from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.playing.loop import episode_world
+from fogbench.bench.playing.play import lost, play
+from fogbench.bench.reading.scenario import Scenario, Variant
+from fogbench.bench.reading.variant import Entry
 from fogbench.planners.astar import AStar
 from fogbench.planners.random_walk import RandomWalk
 from fogbench.worlds.maps.families.blobs import Blobs
@@ -100,7 +102,7 @@ def scenario(picture: Callable[[str], Any], conditions: Callable[..., Any]) -> C
     def make(maps: Any, *agents: Any, **fields: Any) -> Scenario:
         family = picture(maps) if isinstance(maps, str) else maps
         entries = tuple(Entry(f"agent {n}", "", settings, "") for n, settings in enumerate(agents))
-        variant = Variant("row", family, conditions(**fields), entries, "agent 0", episodes=100, seed=0)
+        variant = Variant("row", "grid", family, conditions(**fields), entries, "agent 0", episodes=100, seed=0)
         return Scenario(Path(), "", "hand-made", "", (variant,), {}, "")
 
     return make
@@ -138,10 +140,8 @@ def test_every_field_of_a_record(scenario: Callable[..., Scenario]) -> None:
         "search_nodes": 12,
         "actions": (0.0, 2.0, 1.0, 1.0, 0.0, 0.0),
         "detail": "",
-        "density": 1 - 8 / 9,
-        "detour": 1.0,
-        "dead_ends": 0.0,
-        "openness": 24 / 64,
+        "remaining": (4.0, 3.0, 4.0, 3.0, 2.0, 1.0),
+        "covariates": {"density": 1 - 8 / 9, "detour": 1.0, "dead_ends": 0.0, "openness": 24 / 64},
         "workers": 2,
         "agent_key": agent_key(made.variants[0].agents[0]),
         "world_key": world_key(made.variants[0]),
@@ -170,7 +170,7 @@ def test_outcomes(
     row = first(scenario(CORNER, Script(answers=answers), steps=5))
     assert (row.outcome, row.steps, row.length, row.detail) == (outcome.name, steps, length, "")
     assert len(row.actions) == steps
-    assert len(row.decision_seconds) == steps + (outcome is Outcome.GAVE_UP)
+    assert len(row.decision_seconds) == len(row.remaining) == steps + (outcome is Outcome.GAVE_UP)
 
 
 def test_a_blocked_move_is_a_step(scenario: Callable[..., Scenario]) -> None:

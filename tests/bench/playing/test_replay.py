@@ -1,6 +1,7 @@
 """Replays of recorded episodes, and the pictures that are drawn of them."""
 
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -10,14 +11,16 @@ import pytest
 from PIL import Image
 
 from fogbench.bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, film, known, strip, truth
-from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.replay import End, Moment, retrace, verify
-from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.reading.scenario import Scenario, Variant
+from fogbench.bench.reading.variant import Entry
 from fogbench.planners.astar import AStar
 from fogbench.planners.memoryless import Memoryless
 from fogbench.planners.random_walk import RandomWalk
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.picture import Picture
 from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Outcome
 
 Row = dict[str, Any]
@@ -32,7 +35,7 @@ def scenario(conditions: Callable[..., Any]) -> Callable[..., Scenario]:
 
     def make(family: Any, settings: Any, **fields: Any) -> Scenario:
         entry = Entry("agent", "", settings, "")
-        variant = Variant("row", family, conditions(**fields), (entry,), "agent", episodes=100, seed=0)
+        variant = Variant("row", "grid", family, conditions(**fields), (entry,), "agent", episodes=100, seed=0)
         return Scenario(Path(), "", "hand-made", "", (variant,), {}, "")
 
     return make
@@ -46,13 +49,14 @@ def record(scenario: Scenario, episode: int) -> Row:
 
 def replayed(scenario: Scenario, episode: int, actions: Any) -> tuple[list[Moment], End]:
     """Every moment of a replay, and its end."""
-    moments, kept = retrace(scenario.variants[0], episode, np.array(actions)), []
+    row = {"episode": episode, "steps": len(actions), "actions": actions}
+    moments, kept = retrace(scenario.variants[0], row), []
     while True:
         try:
             moment = next(moments)
         except StopIteration as stop:
             return kept, stop.value
-        kept.append(moment._replace(known=moment.known.copy(), path=list(moment.path)))
+        kept.append(moment._replace(known=deepcopy(moment.known), path=list(moment.path)))
 
 
 def test_recorded_episodes_of_every_outcome_replay(scenario: Callable[..., Scenario]) -> None:
@@ -120,12 +124,17 @@ def moments(scenario: Callable[..., Scenario], picture: Callable[[str], Any]) ->
     return replayed(made, 0, (0.0, 0.0, 0.0, 1.0))[0]
 
 
+def pictures(moments: list[Moment]) -> list[Picture]:
+    """What some moments look like."""
+    return [moment.picture() for moment in moments]
+
+
 def test_moments_follow_the_agent(moments: list[Moment]) -> None:
     """Each moment has its look, the path up to it, and the known map with its look in it."""
     assert [moment.observation.place for moment in moments] == [(0, 0), (1, 0), (2, 0), (2, 0), (2, 1)]
     assert [moment.observation.blocked for moment in moments] == [False, False, False, True, False]
     assert moments[3].path == [(0, 0), (1, 0), (2, 0), (2, 0)]
-    first, last = moments[0].known.tolist(), moments[-1].known.tolist()
+    first, last = moments[0].known.cells.tolist(), moments[-1].known.cells.tolist()
     assert first == [[FREE, FREE, UNKNOWN], [FREE, BLOCKED, UNKNOWN], [UNKNOWN] * 3]
     assert last == [[FREE, FREE, UNKNOWN], [FREE, BLOCKED, FREE], [FREE, FREE, FREE]]
 
@@ -137,12 +146,12 @@ def test_pictures_show_every_cell(moments: list[Moment]) -> None:
     def tinted(colour: tuple[int, ...]) -> tuple[int, ...]:
         return tuple(int(0.6 * a + 0.4 * b) for a, b in zip(colour, (86, 180, 233), strict=True))
 
-    assert [[tuple(cell) for cell in row] for row in known(moments[1]).tolist()] == [
+    assert [[tuple(cell) for cell in row] for row in known(moments[1].picture()).tolist()] == [
         [PATH, free, unknown],
         [AGENT, blocked, unknown],
         [free, free, GOAL],
     ]
-    assert [[tuple(cell) for cell in row] for row in truth(moments[1]).tolist()] == [
+    assert [[tuple(cell) for cell in row] for row in truth(moments[1].picture()).tolist()] == [
         [PATH, tinted(free), free],
         [AGENT, tinted(blocked), free],
         [tinted(free), tinted(free), GOAL],
@@ -155,7 +164,7 @@ def test_only_what_the_sensor_shows_is_tinted(scenario: Callable[..., Scenario],
     (moment,), _ = replayed(made, 0, ())
     hidden = moment.observation.view[2:, 2:] == UNKNOWN  # [3, 3]
     plain = COLOURS[np.where(moment.world.blocked, BLOCKED, FREE)]  # [3, 3, RGB]
-    untouched = (truth(moment) == plain).all(-1)  # [3, 3]
+    untouched = (truth(moment.picture()) == plain).all(-1)  # [3, 3]
     untouched[2, 2] = hidden[2, 2]  # the goal is drawn over it
     assert hidden.any()
     assert (untouched == hidden).all()
@@ -165,7 +174,7 @@ def test_marks_on_large_maps_are_large(scenario: Callable[..., Scenario], pictur
     """Of 120 rows, agent and goal reach two cells around theirs, as far as the map does."""
     rows = [f"S{'.' * 59}", *["." * 60] * 118, f"{'.' * 59}G"]
     (moment,), _ = replayed(scenario(picture(" ".join(rows)), AStar()), 0, ())
-    drawn = known(moment)
+    drawn = known(moment.picture())
     assert np.argwhere((drawn == AGENT).all(-1)).tolist() == [[r, c] for r in range(3) for c in range(3)]
     assert np.argwhere((drawn == GOAL).all(-1)).tolist() == [[r, c] for r in (117, 118, 119) for c in (57, 58, 59)]
 
@@ -181,7 +190,11 @@ def test_a_strip_is_as_high_as_its_maps(tmp_path: Path) -> None:
 def test_a_strip_is_a_a_picture(moments: list[Moment], tmp_path: Path) -> None:
     """A PNG that is as wide as it has moments."""
     for count in (1, 4):
-        strip([(truth(m), known(m), n) for n, m in enumerate(moments[:count])], "a title", tmp_path / "strip.png")
+        strip(
+            [(truth(p), known(p), n) for n, p in enumerate(pictures(moments[:count]))],
+            "a title",
+            tmp_path / "strip.png",
+        )
         with Image.open(tmp_path / "strip.png") as image:
             image.load()
             assert (image.format, image.size) == ("PNG", (264 * count, 594))
@@ -189,7 +202,7 @@ def test_a_strip_is_a_a_picture(moments: list[Moment], tmp_path: Path) -> None:
 
 def test_a_film_shows_every_step(moments: list[Moment], tmp_path: Path) -> None:
     """A GIF of 80 ms a step, the truth beside the known map; a step that changes nothing prolongs its frame."""
-    film([(truth(m), known(m), n) for n, m in enumerate(moments)], tmp_path / "film.gif")
+    film([(truth(p), known(p), n) for n, p in enumerate(pictures(moments))], tmp_path / "film.gif")
     scale = SIDE // 3
     with Image.open(tmp_path / "film.gif") as image:
         assert (image.format, image.size) == ("GIF", (7 * scale, 3 * scale))

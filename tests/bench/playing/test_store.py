@@ -17,6 +17,7 @@ from fogbench.bench.playing.episode import SCHEMA, Episode
 from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
 from fogbench.bench.reading.scenario import Scenario
+from fogbench.worlds.maps.covariates import COVARIATES
 from fogbench.worlds.mistake import Mistake
 
 
@@ -47,10 +48,8 @@ def row(scenario: Scenario, episode: int, **changes: Any) -> Episode:
         search_nodes=7,
         actions=(0.0, 1.0),
         detail="",
-        density=0.1,
-        detour=1.0,
-        dead_ends=0.0,
-        openness=0.9,
+        remaining=(2.0, 1.0),
+        covariates=dict(zip(COVARIATES, (0.1, 1.0, 0.0, 0.9), strict=True)),
         workers=1,
         agent_key=agent_key(entry),
         world_key=world_key(variant),
@@ -60,7 +59,7 @@ def row(scenario: Scenario, episode: int, **changes: Any) -> Episode:
 
 def write(folder: Path, *rows: Episode) -> None:
     """Append rows as one run would."""
-    with recording(folder) as recorder:
+    with recording(folder, COVARIATES) as recorder:
         for each in rows:
             recorder.append(each)
 
@@ -70,13 +69,39 @@ def test_a_row_comes_back_as_it_went(make: Any, tmp_path: Path) -> None:
     scenario = make()
     write(tmp_path / "store", row(scenario, 0), row(scenario, 1, reference_length=4.0))
     frame = pd.read_parquet(tmp_path / "store" / "episodes")
-    assert list(frame.columns) == SCHEMA.names
+    assert list(frame.columns) == [*SCHEMA.names, *COVARIATES]
     for number, back in enumerate(frame.to_dict("records")):
         sent = row(scenario, number, reference_length=4.0 if number else None)
         for name in SCHEMA.names:
             value = getattr(sent, name)
             got = tuple(back[name]) if isinstance(value, tuple) else back[name]
             assert got == value or (value is None and pd.isna(got)), name
+        assert {name: back[name] for name in COVARIATES} == sent.covariates
+
+
+def test_covariates_of_all_kinds_are_columns_of_every_part(make: Any, tmp_path: Path) -> None:
+    """A world of another kind has none of these, and others."""
+    scenario, store = make(), tmp_path / "store"
+    with recording(store, (*COVARIATES, "stations")) as recorder:
+        recorder.append(row(scenario, 0))
+        recorder.flush()
+        recorder.append(row(scenario, 1, covariates={"stations": 7.0}))
+    frame = pd.read_parquet(store / "episodes").sort_values("episode")
+    assert frame["density"].tolist()[0] == 0.1
+    assert frame["density"].isna().tolist() == [False, True]
+    assert frame["stations"].tolist()[1] == 7.0
+
+
+def test_a_store_of_before_is_read(make: Any, tmp_path: Path) -> None:
+    """Rows of a version without `remaining` come back without it, beside those of today."""
+    scenario, store = make(), tmp_path / "store"
+    write(store, row(scenario, 0))
+    part = store / "episodes" / "000001.parquet"
+    pq.write_table(pq.read_table(part).drop_columns(["remaining"]), part)
+    write(store, row(scenario, 1))
+    frame = read(store, scenario, ["episode", "remaining"])
+    assert frame["episode"].tolist() == [0, 1]
+    assert frame["remaining"].isna().tolist() == [True, False]
 
 
 def test_only_current_rows_are_read(make: Any, tmp_path: Path) -> None:
@@ -129,7 +154,7 @@ def test_a_part_is_never_written_again(make: Any, tmp_path: Path) -> None:
     write(store, row(scenario, 0))
     (first,) = (store / "episodes").iterdir()
     before = first.read_bytes()
-    with recording(store) as recorder:
+    with recording(store, ()) as recorder:
         for episode in range(1, ROWS + 1):
             recorder.append(row(scenario, episode))
         assert recorded(store, scenario) == {("short", "astar"): set(range(ROWS + 1))}
@@ -170,7 +195,7 @@ def test_a_broken_part_is_named_and_kept(make: Any, tmp_path: Path) -> None:
 def test_a_second_run_is_refused(make: Any, tmp_path: Path) -> None:
     """While one run records, another gets one line; afterwards it may record."""
     store = tmp_path / "store"
-    with recording(store), pytest.raises(Mistake) as caught:
+    with recording(store, ()), pytest.raises(Mistake) as caught:
         write(store, row(make(), 0))
     assert str(caught.value) == f"{store}: got a second run; expected the one in process {os.getpid()} to end first."
     write(store, row(make(), 0))
@@ -180,7 +205,7 @@ def test_a_second_run_is_refused(make: Any, tmp_path: Path) -> None:
 def test_a_store_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     """A file where the folder should be gives one line."""
     (tmp_path / "store").write_text("in the way")
-    with pytest.raises(StoreError) as caught, recording(tmp_path / "store"):
+    with pytest.raises(StoreError) as caught, recording(tmp_path / "store", ()):
         pass
     assert str(caught.value).startswith(f"{tmp_path / 'store'}: got ")
     assert str(caught.value).endswith("; expected a place that can be written.")
@@ -196,7 +221,7 @@ from fogbench.bench.playing.store import recorded, recording
 path = Path(sys.argv[1])
 scenario = read_scenario(path.read_text(), path)
 first = pickle.loads(Path(sys.argv[2]).read_bytes())
-with recording(path.parent / "many") as recorder:
+with recording(path.parent / "many", ()) as recorder:
     for episode in range(100_000):
         seconds = tuple(episode + step / 40 for step in range(40))
         recorder.append(replace(first, episode=episode, decision_seconds=seconds, actions=seconds))

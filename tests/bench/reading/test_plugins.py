@@ -95,7 +95,7 @@ class Sparse(Blobs):
 
 
 class Sea(Blobs):
-    kind: ClassVar[str] = "sea"
+    kinds: ClassVar[tuple[str, ...]] = ("sea",)
 
 
 class Bare(DrawnMaps):
@@ -243,19 +243,19 @@ def test_what_is_wrong_with_its_settings_is_told_by_its_fields(
     assert found == "4:" + expected.replace("PATH", "agents[1]../mine.py:Mine").replace("{folder}", str(tmp_path))
 
 
-@pytest.mark.parametrize(
-    ("family", "expected"),
-    [
-        ("./maps.py:Sea", "of the kind grid; this one is of 'sea'."),
-        ("./needs.py:X", "that is installed; this one needs the package fog_lamp, which is not installed."),
-    ],
-)
-def test_what_is_wrong_with_a_map_family_of_a_user_is_one_line(
-    family: str, expected: str, read: Read, tmp_path: Path
-) -> None:
-    """A kind of world that there is none of, a package that is missing."""
+def test_a_map_family_of_no_kind_is_one_line(read: Read) -> None:
+    """A kind of world that there is none of is told at the name of the family."""
+    found = line(read, old="blobs", new="./maps.py:Sea")
+    expected = "a map family of the kind grid; this one is of 'sea'"
+    assert found == f"2:8  maps: got ./maps.py:Sea; expected {expected}."
+
+
+def test_a_map_family_that_lacks_a_package_skips_the_scenario(read: Read, tmp_path: Path) -> None:
+    """It says which, as an agent does; the rest of the file is read."""
     (tmp_path / "needs.py").write_text("import fog_lamp\n")
-    assert line(read, old="blobs", new=family) == f"2:8  maps: got {family}; expected a map family {expected}"
+    scenario = read(old="blobs", new="./needs.py:X")
+    assert scenario.skipped == "./needs.py:X needs the package fog_lamp, which is not installed"
+    assert scenario.variants == ()
 
 
 def test_the_text_of_a_users_error_is_what_was_expected(read: Read) -> None:

@@ -17,9 +17,7 @@ from fogbench.worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"
-KEYS = (
-    f"{', '.join(Training.model_fields)}, name, about, network, maps, sensor, rules, tasks, budget, variants, lessons"
-)
+KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, kind, sensor, rules, tasks, budget, variants, lessons"
 CHECKPOINTS = ", ".join(["none", *sorted(card.stem for card in SHIPPED.glob("*.json"))])
 SETTINGS = f"one of {', '.join(Macn.model_fields)}"
 
@@ -153,7 +151,7 @@ BROKEN = [
     (
         "32x32: {maps",
         "32x32: {agents: [astar], maps",
-        ["14:11  variants.32x32: got agents; expected one of maps, sensor, rules, tasks, budget."],
+        ["14:11  variants.32x32: got agents; expected one of maps, kind, sensor, rules, tasks, budget."],
     ),
     ("radius: 3", "radius: 0", ["6:18  sensor.radius: got 0; expected a whole number of at least 1."]),
     (

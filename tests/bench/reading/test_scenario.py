@@ -11,9 +11,9 @@ from fogbench.worlds.mistake import Mistake
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 AGENTS = f"one of {', '.join([*planners.PLANNERS, *learned.LEARNED])}, or a class as file.py:Class or module:Class"
 
-KEYS = "name, about, maps, sensor, rules, tasks, budget, variants, agents, reference, episodes, seed, published"
+KEYS = "name, about, maps, kind, sensor, rules, tasks, budget, variants, agents, reference, episodes, seed, published"
 PUBLISHED = "source, success, path_ratio, reference_ratio, test_error"
-VARIED = "maps, sensor, rules, tasks, budget, agents, reference, episodes, seed"
+VARIED = "maps, kind, sensor, rules, tasks, budget, agents, reference, episodes, seed"
 
 GOOD = """\
 name: grid

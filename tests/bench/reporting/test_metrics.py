@@ -41,7 +41,6 @@ BY_HAND = {
     "memory_max": (300, 3),
     "steps": (5, 2),
     "search_nodes": (20, 3),
-    "budget_fit": (75, 4),
     "outcome_reached": (2, 4),
     "outcome_out_of_steps": (1, 4),
     "outcome_hung": (1, 4),
@@ -86,7 +85,7 @@ def test_an_agent_without_a_decision_has_no_times(recorded: Recorded) -> None:
     """Where every process was lost there is no time, memory or error: the zeros of the record are no measurements."""
     cell = recorded(FOUR[3], FOUR[3])
     defined = {metric.name for metric in METRICS if metric(cell) != Estimate() and not np.isnan(metric(cell).value)}
-    assert defined == {"success", "spl", "budget_fit"} | {f"outcome_{outcome.name.lower()}" for outcome in Outcome}
+    assert defined == {"success", "spl"} | {f"outcome_{outcome.name.lower()}" for outcome in Outcome}
 
 
 def test_a_path_shorter_than_the_optimum_counts_as_the_optimum_in_spl(recorded: Recorded) -> None:

@@ -12,7 +12,8 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from fogbench.bench.reading.scenario import Entry, Scenario
+from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reading.variant import Entry
 from fogbench.bench.reporting.panels import Look, looks_of, panels_of
 from fogbench.bench.reporting.plots import draw, draw_figures
 from fogbench.bench.reporting.report import summary

@@ -14,7 +14,7 @@ from rich.console import Console
 from fogbench.bench.playing.episode import SCHEMA
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
-from fogbench.bench.reporting.sections import ASKED, columns, failures
+from fogbench.bench.reporting.sections import asked, columns, failures
 
 Recorded = Callable[..., pd.DataFrame]
 Make = Callable[..., Scenario]
@@ -66,7 +66,7 @@ def test_a_report_reads_columns_of_the_store() -> None:
 def test_the_summary_has_a_row_for_every_number(frame: pd.DataFrame, scenario: Scenario) -> None:
     """All metrics of the three cells that were played, and the comparisons of the one pair of agents."""
     table = summary(frame, scenario)
-    metrics, compared = len(ASKED) - 7, 7
+    metrics, compared = len(asked(scenario)) - 7, 7
     assert tuple(table.columns) == COLUMNS
     assert len(table) == 3 * metrics + compared
     one = table[(table["agent"] == "memoryless") & (table["metric"] == "success")]
@@ -98,11 +98,21 @@ def test_the_page_says_all_of_it(frame: pd.DataFrame, scenario: Scenario, tmp_pa
     assert text == PAGE.read_text("utf-8")
 
 
-def test_the_page_explains_every_metric() -> None:
+def test_the_page_explains_every_metric(scenario: Scenario) -> None:
     """One row each: its column, its name in the CSV, unit, direction, episodes and meaning, none of them empty."""
-    rows = columns().rows
-    assert [row[1] for row in rows] == [f"`{name}`" for name in ASKED]
+    rows = columns(scenario).rows
+    assert [row[1] for row in rows] == [f"`{name}`" for name in asked(scenario)]
     assert all(map(all, rows))
+
+
+def test_words_come_from_the_kind(scenario: Scenario) -> None:
+    """The reference of grids is called A* wherever it is told."""
+    told = asked(scenario)
+    assert told["reference_ratio"].heading == "ratio to A*"
+    assert told["reference_ratio"].over.words == "own successes that A* solved too"
+    assert not any(
+        "{" in text for metric in told.values() for text in (metric.heading, metric.about, metric.over.words)
+    )
 
 
 def test_writing_twice_gives_the_same_bytes(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
@@ -162,13 +172,14 @@ import pyarrow as pa
 
 from fogbench.bench.playing.episode import SCHEMA
 from fogbench.bench.reporting.report import READS, write_report
-from fogbench.bench.reading.scenario import Entry, Scenario, Variant
+from fogbench.bench.reading.scenario import Scenario, Variant
+from fogbench.bench.reading.variant import Entry
 
 n, cells = 10_000, 10
 rng = np.random.default_rng(0)
 agents = [f"agent{k}" for k in range(cells)]
 entries = tuple(Entry(agent, "", None, "") for agent in agents)
-scenario = Scenario(Path(), "", "large", "", (Variant("all", None, None, entries, agents[0], n, 0),), {}, "")
+scenario = Scenario(Path(), "", "large", "", (Variant("all", "grid", None, None, entries, agents[0], n, 0),), {}, "")
 shortest = np.tile(rng.integers(1, 60, n), cells).astype(float)
 numbers = {name: rng.integers(1, 60, n * cells) for name in ("steps", "peak_memory_bytes", "search_nodes", "judged")}
 ends, kind = np.arange(0, 150 * n * cells + 1, 150), SCHEMA.field("decision_seconds").type

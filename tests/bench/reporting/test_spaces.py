@@ -16,6 +16,7 @@ CLUSTERS = np.array([[0.0, 0], [0, 1], [1, 0], [1, 1], [9, 9], [9, 8], [8, 9], [
 
 LEFT = np.array([0, 0, 0, 0, 3, 3, 3, 3])
 TURNS = np.array([0, 1, 0, 1, 0, 1, 0, 1])
+NAMES = ("down", "right", "up", "left")
 
 
 def test_two_clusters_are_separable() -> None:
@@ -57,7 +58,7 @@ def test_separability_is_that_of_plain_loops(rows: list[tuple[int, ...]]) -> Non
 
 def test_decisions_know_the_commonest_move() -> None:
     """It is what a guess would reach; every space has its number."""
-    decisions = Decisions({"near": CLUSTERS, "same": 0 * CLUSTERS}, np.array([0, 0, 0, 0, 3, 3, 3, 0]), TURNS)
+    decisions = Decisions({"near": CLUSTERS, "same": 0 * CLUSTERS}, np.array([0, 0, 0, 0, 3, 3, 3, 0]), TURNS, NAMES)
     assert decisions.commonest() == 5 / 8
     assert list(decisions.separable()) == ["near", "same"]
 
@@ -73,7 +74,11 @@ def test_a_plane_repeats_and_keeps_clusters() -> None:
 
 def test_a_panel_shows_its_points_by_move() -> None:
     """The title has the number, the legend the moves that there are, and each point is drawn once."""
-    figure = spaces([("raw image", CLUSTERS, 0.5), ("scores", CLUSTERS + 1, 1.0)], LEFT, "eight decisions")
+    figure = spaces(
+        [("raw image", CLUSTERS, 0.5), ("scores", CLUSTERS + 1, 1.0)],
+        Decisions({}, LEFT, TURNS, NAMES),
+        "eight decisions",
+    )
     first, second = figure.axes
     assert [axes.get_title() for axes in figure.axes] == ["raw image: 50.0 %", "scores: 100.0 %"]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["down", "left"]

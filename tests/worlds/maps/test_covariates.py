@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from fogbench.worlds.maps.covariates import covariates
-from fogbench.worlds.types import COVARIATES, Array
+from fogbench.worlds.maps.covariates import COVARIATES, covariates
+from fogbench.worlds.types import Array
 
 
 def plain(blocked: Array) -> tuple[float, float, float]:

@@ -15,7 +15,7 @@ from fogbench.worlds.maps.families.bug_trap import BugTrap
 from fogbench.worlds.maps.families.maze import Maze
 from fogbench.worlds.maps.families.rooms import Rooms
 from fogbench.worlds.maps.families.tunnel import Tunnel
-from fogbench.worlds.maps.layout import DrawnMaps, Layout, fit, world
+from fogbench.worlds.maps.layout import DrawnMaps, Layout, fit
 from fogbench.worlds.types import Array, MapError
 
 FAMILIES: list[DrawnMaps] = [
@@ -100,7 +100,7 @@ def test_only_tasks_inside_the_bounds_make_a_world() -> None:
     layout = Layout(blocked)
 
     def optimum_in(start: tuple[int, int], goal: tuple[int, int], **blocks: Any) -> int | None:
-        found = world(layout, start, goal, conditions(**blocks))
+        found = conditions(**blocks).world(layout, start, goal)
         return None if found is None else found.optimum
 
     assert optimum_in((0, 0), (0, 2)) == 6

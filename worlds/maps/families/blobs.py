@@ -5,8 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.maps.layout import Layout, SquareMaps
+from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.settings import PositiveRange, Range
 
 
@@ -20,7 +19,7 @@ class Blobs(SquareMaps):
     obstacle_size: PositiveRange
     """Both sides of each, drawn uniformly and apart [cells]."""
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A map without a task; the upper left corner of a rectangle is uniform over the cells."""
         del conditions
         blocked = np.zeros((self.size, self.size), np.bool_)  # [H, W]

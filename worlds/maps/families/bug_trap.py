@@ -3,8 +3,7 @@
 import numpy as np
 from pydantic import model_validator
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.maps.layout import Layout, SquareMaps
+from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.settings import PositiveRange, Range
 from fogbench.worlds.types import Cell
 
@@ -34,7 +33,7 @@ class BugTrap(SquareMaps):
             raise ValueError(f"a width from {2 * self.lip[1] + 1}, for lips of {self.lip[1]}")
         return self
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A trap with its task: start uniform inside, goal uniform behind the closed end, as wide as the trap."""
         del conditions
         depth, width, lip = (int(rng.integers(*bounds, endpoint=True)) for bounds in (self.depth, self.width, self.lip))

@@ -7,8 +7,7 @@ from pydantic import AfterValidator, Field
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.maps.layout import Layout, SquareMaps
+from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.settings import Probability
 
 
@@ -29,7 +28,7 @@ class Maze(SquareMaps):
     loops: Probability = 0.0
     """Probability of a wall between two neighbouring corridor cells, which the tree has left standing, to be opened."""
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A maze without a task."""
         del conditions
         side = (self.size + 1) // 2

@@ -2,36 +2,31 @@
 
 from functools import lru_cache
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 
 from fogbench.worlds.files import read, sha256
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.files.map_server import Header, occupancy, read_header, read_image
-from fogbench.worlds.maps.layout import Layout, fit, wanted
-from fogbench.worlds.settings import MapFile, Positive, Settings
-from fogbench.worlds.types import Array, MapError
+from fogbench.worlds.maps.layout import CellConditions, CellMaps, Layout, fit
+from fogbench.worlds.settings import MapFile, Positive
+from fogbench.worlds.types import Array, MapError, World
 
 TRIES = 100
 """Times that `fogbench.worlds.maps.layout.fit` looks for a task before the map is said to have none."""
 
 
-class Occupancy(Settings):
+class Occupancy(CellMaps):
     """One recorded map; start and goal are uniform over its free cells. What was never seen is blocked.
 
     The map is cropped to the smallest rectangle that holds all known cells.
     """
-
-    kind: ClassVar[str] = "grid"
 
     map: MapFile
     """A `.yaml` file; it names the image."""
     downsample: Positive = 1
     """Side of the square of image cells that makes one cell of the map, blocked if any of them is."""
 
-    def sample(self, rng: np.random.Generator, episode: int, conditions: GridConditions) -> GridWorld:
+    def sample(self, rng: np.random.Generator, episode: int, conditions: CellConditions) -> World:
         """A task that fits the conditions; `episode` plays no part.
 
         Raises:
@@ -44,20 +39,12 @@ class Occupancy(Settings):
             found = fit(layout, conditions, rng)
             if found is not None:
                 return found
-        raise MapError(f"{self.map}: no task with {wanted(conditions)} was found")
+        raise MapError(f"{self.map}: no task with {conditions.wanted()} was found")
 
     def words(self) -> str:
         """The digests of both files, and the downsampling."""
         _, image = self._files()
         return f"Occupancy map={sha256(read(self.map))} image={sha256(read(image))} downsample={self.downsample}"
-
-    def tasks(self, conditions: GridConditions) -> int | None:
-        """Any number."""
-        del conditions
-        return None
-
-    def extent(self) -> None:
-        """That of the file's map."""
 
     def _files(self) -> tuple[Header, Path]:
         header = read_header(self.map, read(self.map))

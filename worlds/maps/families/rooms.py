@@ -5,8 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.maps.layout import Layout, SquareMaps
+from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.maps.split import split
 from fogbench.worlds.settings import PositiveRange, Range
 from fogbench.worlds.types import Array
@@ -32,7 +31,7 @@ class Rooms(SquareMaps):
             raise ValueError(f"a size from {least}, for {self.rooms[1]} rooms in a row")
         return self
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """Rooms without a task."""
         del conditions
         blocked = np.zeros((self.size, self.size), np.bool_)  # [H, W]

@@ -6,16 +6,14 @@ Words used here
     half    cells of the corridor on each side of its axis
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import model_validator
 
-from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.grid.rules import SquareView
-from fogbench.worlds.maps.layout import DrawnMaps, Layout
-from fogbench.worlds.maps.sight import hidden
+from fogbench.worlds.maps.layout import CellConditions, DrawnMaps, Layout
 from fogbench.worlds.maps.split import split
 from fogbench.worlds.settings import PositiveRange, Probability, Range
 from fogbench.worlds.types import DELTAS, Array, Cell
@@ -50,7 +48,7 @@ class Tunnel(DrawnMaps):
             raise ValueError(f"a length from {least}, for {self.bends[1]} bends and width {self.width}")
         return self
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A tunnel with its task; the start is uniform over the corridor."""
         half = self.width // 2
         corners = self._corners(rng)  # [segments + 1, 2]
@@ -64,7 +62,13 @@ class Tunnel(DrawnMaps):
         if rng.random() < self.open:
             blocked[end] = False
             return Layout(blocked, start, goal)
-        return Layout(blocked, start, goal, _posts(inner, blocked, end, conditions.sensor))
+        return Layout(blocked, start, goal, _posts(inner, blocked, end, conditions))
+
+    def moments(self, world: Any, path: Sequence[Any]) -> dict[str, int]:
+        """The steps of the end wall first in view, of the turn and of the exit (Khan et al. 2018, appendix B.3)."""
+        from fogbench.worlds.maps.moments import in_tunnel  # noqa: PLC0415  it loads SciPy, which no episode needs
+
+        return in_tunnel(world.blocked, world.posts, self.width, path)
 
     def _corners(self, rng: np.random.Generator) -> Array:
         length = int(rng.integers(*self.length, endpoint=True))
@@ -94,17 +98,12 @@ def _walled(corners: Array, half: int) -> tuple[Array, Array]:
     return inner, blocked
 
 
-def _posts(inner: Array, blocked: Array, wall: tuple[slice, slice], sensor: SquareView) -> frozenset[Cell]:
+def _posts(inner: Array, blocked: Array, wall: tuple[slice, slice], conditions: CellConditions) -> frozenset[Cell]:
     """Cells of the corridor from which the sensor shows a cell of the end wall."""
     ends = [(r, c) for r in range(wall[0].start, wall[0].stop) for c in range(wall[1].start, wall[1].stop)]
-    posts = set()
-    for row, column in ends:
-        top, left = max(0, row - sensor.radius), max(0, column - sensor.radius)
-        near = inner[top : row + sensor.radius + 1, left : column + sensor.radius + 1]
-        for r, c in (np.argwhere(near) + np.array([top, left])).tolist():
-            if not (sensor.occlusion and hidden(blocked, r, c, row - r, column - c)):
-                posts.add((r, c))
-    return frozenset(posts)
+    places = np.argwhere(inner)  # [n, 2]
+    shown = np.any([conditions.shows(blocked, end, places) for end in ends], 0)  # [n]
+    return frozenset((row, column) for row, column in places[shown].tolist())
 
 
 def _start(inner: Array, goal: Cell, rng: np.random.Generator) -> Cell:

@@ -8,7 +8,6 @@ import pytest
 
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.movingai import MovingAI
-from fogbench.worlds.maps.layout import world
 from fogbench.worlds.types import Cell, MapError
 
 MAP = "type octile\nheight 2\nwidth 30\nmap\n" + "." * 30 + "\n" + "." * 29 + "@\n"
@@ -70,7 +69,8 @@ def test_no_more_tasks_are_searched_than_needed(tmp_path: Path, monkeypatch: pyt
         searched.append(arguments)
         return world(*arguments)
 
-    monkeypatch.setattr("fogbench.worlds.maps.families.movingai.world", counted)
+    world = GridConditions.world
+    monkeypatch.setattr(GridConditions, "world", counted)
     maps = family(tmp_path)
     for episode in (2, 0, 1, 2):
         maps.sample(RNG, episode, conditions(1, 100))

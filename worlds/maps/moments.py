@@ -6,29 +6,26 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import binary_opening
 
-from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.maps.families.tunnel import Tunnel
-from fogbench.worlds.types import Array, Cell, MapFamily
+from fogbench.worlds.types import Array, Cell
 
 
-def milestones(family: MapFamily, world: GridWorld, path: Sequence[Cell]) -> dict[str, int]:
+def in_tunnel(blocked: Array, posts: frozenset[Cell], width: int, path: Sequence[Cell]) -> dict[str, int]:
     """The steps of the end wall first in view, of the turn and of the exit, by name; what did not happen is left out.
 
     Args:
-        family: of the world; outside of tunnels there are no such moments.
-        world: of the episode.
+        blocked: [H, W] bool, the map.
+        posts: cells from which the end wall is seen.
+        width: inner width of the corridor.
         path: the cell of each decision, and the last.
 
     Returns:
         The first decision that is taken with the end wall in view; that leads, inside of the corridor, back to a cell
         visited before; that is taken outside of the corridor.
     """
-    if not isinstance(family, Tunnel):
-        return {}
-    inside = corridor(world.blocked, family.width)
+    inside = corridor(blocked, width)
     first = {place: step for step, place in reversed(list(enumerate(path)))}
     happened = {
-        "end wall in view": [place in world.posts for place in path[:-1]],
+        "end wall in view": [place in posts for place in path[:-1]],
         "turn": [bool(inside[place]) and first[after] < first[place] for place, after in pairwise(path)],
         "exit": [not inside[place] for place in path[:-1]],
     }

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fogbench.bench.playing.milestones import corridor, milestones
-from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.maps.moments import corridor
 from fogbench.worlds.types import Cell
 
 TUNNEL = """
@@ -42,8 +41,7 @@ def test_marks_of_a_hand_built_tunnel(columns: list[int], marks: dict[str, int],
     """Each is the number of the first such decision; what never happens is left out."""
     path: list[Cell] = [(3, column) for column in columns]
     world = draw(TUNNEL)
-    assert milestones(Tunnel(length=(5, 5)), world, path) == marks
-    assert milestones(Blobs(size=8, obstacles=(0, 0), obstacle_size=(1, 1)), world, path) == {}
+    assert Tunnel(length=(5, 5)).moments(world, path) == marks
 
 
 @pytest.mark.parametrize("width", [1, 3])

@@ -1,0 +1,120 @@
+"""Classes that a page names: of map families, kinds of world, agents and networks, with every mistake at its name."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, cast
+
+from fogbench.bench.reading.blocks import Block, read_block
+from fogbench.bench.reading.page import blocks
+from fogbench.bench.reading.plugins import PluginError, load, load_kind, target
+from fogbench.bench.reading.positions import Fault, Value, join
+from fogbench.bench.reading.tables import FAMILY, KIND, Table
+from fogbench.worlds.mistake import Unavailable, near
+from fogbench.worlds.settings import Settings
+from fogbench.worlds.types import MapFamily
+
+Wrong = Callable[[str, str], Fault]
+"""From what was expected, and the nearest name, to a fault."""
+
+
+class Finder:
+    """Finds what the names of a page stand for, and reads their blocks; what is wrong is added to its faults."""
+
+    def __init__(self, folder: Path) -> None:
+        """Plug-ins and map files are relative to `folder`."""
+        self.folder = folder
+        self.around: dict[str, Any] = {"folder": folder}
+        self.faults: list[Fault] = []
+        self.meant: set[str] = set()  # names in place of which unknown ones stand
+        self.skipped = ""  # why worlds cannot be made here
+
+    def block(self, settings: type[Block], value: Value) -> Block | None:
+        """A block of the page."""
+        return read_block(settings, value, self.around, self.faults)
+
+    def named(self, item: Value, expected: str) -> tuple[str, Value, Wrong] | None:
+        """A name, its settings, and what tells that the name is wrong; None where that is not what stands there."""
+        if isinstance(item.content, str):
+            return item.content, replace(item, content={}, path=join(item.path, item.content)), item.wrong
+        if len(item.fields()) == 1:
+            ((name, block),) = item.fields().items()
+            return name, opened(block), partial(item.wrong_key, name)
+        self.faults.append(item.wrong(expected))
+        return None
+
+    def find(self, table: Table, name: str, wrong: Wrong) -> tuple[str, type[Settings] | None, str]:
+        """Where the class of a plug-in is, the class, and which package it lacks.
+
+        A name that is not known is read as the one that was meant, so that what is wrong below it is told as well.
+        """
+        try:
+            place = target(table, name, self.folder)
+        except PluginError as error:
+            self.faults.append(wrong(str(error), error.near))
+            self.meant.add(error.near)
+            return self.find(table, error.near, wrong) if error.near else ("", None, "")
+        try:
+            return place, load(table, name, place), ""
+        except PluginError as error:
+            self.faults.append(wrong(str(error), error.near))
+            return place, None, ""
+        except Unavailable as error:
+            return place, None, str(error)
+
+    def family_class(self, page: Value) -> tuple[type[Settings], Value] | None:
+        """The class of a page's map family and its block; None where there is none, or it lacks a package."""
+        maps = page.child("maps")
+        if maps is None or not isinstance(maps.content, dict):
+            return None
+        if len(maps.content) != 1:
+            several = maps.base if maps.base and len(maps.base.fields()) != 1 else maps
+            self.faults.append(several.wrong("a mapping with one map family"))
+            return None
+        ((name, block),) = maps.content.items()
+        _, found, missing = self.find(FAMILY, name, partial(maps.wrong_key, name))
+        self.skipped = f"{name} {missing}" if missing else ""
+        return (found, opened(block)) if found else None
+
+    def kind_class(self, page: Value, family: type[Settings] | None) -> tuple[str, type[Settings] | None]:
+        """The kind of worlds that a page is about, and the class of its conditions, if it is at hand.
+
+        A family that cannot be found is taken for one of the first kind, so that the rest of the page is read.
+        """
+        possible = cast(MapFamily, family).kinds if family else tuple(KIND.targets())
+        said = page.child("kind")
+        name = str(said.content) if said and said.content and not said.unset else possible[0]
+        if self.skipped:  # of a family that is missing, nobody knows the kind
+            return name, None
+        try:
+            kind = load_kind(name)
+            if said and not {name, kind.maps} & set(possible):
+                told = f"a kind that these maps can be: {' or '.join(possible)}"
+                self.faults.append(said.wrong(told, near(name, possible)))
+            return name, load(KIND, name, kind.conditions)
+        except PluginError as error:
+            self.faults.append(said.wrong(str(error), error.near) if said else _of_no_kind(page, name))
+        except Unavailable as error:
+            self.skipped = f"{name} {error}"
+        return name, None
+
+
+def _of_no_kind(page: Value, kind: str) -> Fault:
+    """A map family makes worlds of a kind that there is none of."""
+    maps = page.fields()["maps"]
+    told = f"a map family of the kind {' or '.join(KIND.targets())}; this one is of {kind!r}"
+    return maps.wrong_key(next(iter(maps.fields())), told)
+
+
+def opened(block: Value) -> Value:
+    """A block; nothing at all stands for no settings."""
+    return block if block.content is not None else replace(block, content={})
+
+
+def blocks_of(page: Value, folder: Path) -> tuple[str, ...]:
+    """The blocks that the kind of a page reads; mistakes are told when the page itself is read."""
+    finder = Finder(folder)
+    family = finder.family_class(page)
+    _, conditions = finder.kind_class(page, family[0] if family else None)
+    return blocks(conditions) if conditions else ()
