@@ -1,6 +1,9 @@
-"""The public face: what plug-ins, notebooks and scripts need, by one name. A thing is imported when it is asked for.
+"""The public face: what plug-ins, notebooks and scripts need, by one name.
 
-`fogbench/__init__.pyi` lists the names, for people and for type checkers.
+`from fogbench import Settings, Move, KnownMap` is all that a planner asks for. A thing is imported when it is first
+named, so that `import fogbench` loads none of them, nor NumPy.
+
+The names stand in `fogbench/__init__.pyi`, which type checkers read too; `docs/extending.md` has a word on each.
 """
 
 from pathlib import Path

@@ -1,8 +1,10 @@
-"""What an import brings with it: the tables name everything and load nothing."""
+"""What an import brings with it: the face and the tables name everything and load nothing."""
 
+import ast
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from pkgutil import resolve_name
 
@@ -15,6 +17,16 @@ from fogbench.planners import PLANNERS
 from fogbench.worlds import FAMILIES, KINDS
 
 HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib", "sklearn"}
+
+STUB = ast.parse(Path(fogbench.__file__).with_suffix(".pyi").read_text("utf-8"))
+
+FACE = {
+    name.name: f"fogbench.{line.module}"
+    for line in ast.walk(STUB)
+    if isinstance(line, ast.ImportFrom)
+    for name in line.names
+}
+"""The names of the face, and the modules that they come from."""
 
 TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **KINDS}
 
@@ -59,10 +71,35 @@ def test_the_command_line_loads_nothing_heavy(code: str) -> None:
     assert not HEAVY & loaded(code)
 
 
+def test_the_face_alone_loads_nothing() -> None:
+    """Neither a module of the project, nor any package but the one that waits to be asked."""
+    new = loaded("import fogbench") - loaded("import ast, lazy_loader, pathlib")
+    assert new == {"fogbench"}
+
+
+def test_the_face_loads_what_is_asked_for_alone() -> None:
+    """The words of a planner need no network, and those of settings no Numba."""
+    assert not HEAVY & loaded("from fogbench import Settings, Task, Observation, Move, BLOCKED, Mistake")
+    assert not HEAVY - {"numba"} & loaded("from fogbench import KnownMap, Route, search, SquareMaps, Layout")
+
+
+@pytest.mark.parametrize("name", FACE)
+def test_a_name_of_the_face_is_that_of_its_module(name: str) -> None:
+    """The same object, whoever is asked first."""
+    assert getattr(fogbench, name) is getattr(import_module(FACE[name]), name)
+
+
+def test_the_face_is_what_its_stub_says() -> None:
+    """No name more, and none less."""
+    assert set(fogbench.__all__) == set(FACE)
+    with pytest.raises(AttributeError):
+        fogbench.nothing  # noqa: B018  it is asked for
+
+
 def test_tables_load_none_of_their_entries() -> None:
     """Importing the packages with the tables imports no module that the tables name."""
     modules = {target.partition(":")[0] for target in TARGETS.values()}
-    assert not modules & loaded("import fogbench.worlds, planners, learned")
+    assert not modules & loaded("import fogbench.worlds, fogbench.planners, fogbench.learned")
 
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)

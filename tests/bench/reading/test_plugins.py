@@ -109,14 +109,14 @@ class Late(Blobs):
 
 POINTS = """
 [fogbench.planners]
-walker = planners.random_walk:RandomWalk
-astar = planners.random_walk:RandomWalk
+walker = fogbench.planners.random_walk:RandomWalk
+astar = fogbench.planners.random_walk:RandomWalk
 
 [fogbench.learned]
-net = planners.memoryless:Memoryless
+net = fogbench.planners.memoryless:Memoryless
 
 [fogbench.families]
-tubes = worlds.tunnel:Tunnel
+tubes = fogbench.worlds.maps.families.tunnel:Tunnel
 """
 
 Read = Callable[..., Scenario]
@@ -204,9 +204,12 @@ def test_an_agent_of_another_kind_of_world_is_skipped_with_its_reason(read: Read
             "./packed.py:Mine",
             "one file alone, or a package that is installed; it imports my_lamps, which lies beside it.",
         ),
-        ("fogbench.planners.nowhere:Mine", "a module that is installed; there is no planners.nowhere."),
+        ("fogbench.planners.nowhere:Mine", "a module that is installed; there is no fogbench.planners.nowhere."),
         ("nowhere.at_all:Mine", "a module that is installed; there is no nowhere."),
-        ("fogbench.planners.astar:Astar", "a class of planners.astar, which has no Astar. Did you mean AStar?"),
+        (
+            "fogbench.planners.astar:Astar",
+            "a class of fogbench.planners.astar, which has no Astar. Did you mean AStar?",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_class_of_a_user_is_one_line(
