@@ -1,9 +1,10 @@
 """The JSON Schema of scenario files, with which editors complete and check them."""
 
+from collections.abc import Mapping
 from functools import reduce
 from operator import or_
 from types import GenericAlias
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
@@ -49,19 +50,22 @@ def _blocks() -> dict[str, Any]:
     kinds = list(_classes(KIND).values())
     names = dict.fromkeys(block for kind in kinds for block in blocks(kind))
     fields = [kind.model_fields for kind in kinds]
-    return {name: (reduce(or_, [each[name].annotation for each in fields if name in each]), ...) for name in names}
+    return {
+        name: (reduce(or_, [cast(Any, each[name].annotation) for each in fields if name in each]), ...)
+        for name in names
+    }
 
 
-def _one_of_many(title: str, classes: dict[str, type[BaseModel]]) -> Any:
+def _one_of_many(title: str, classes: Mapping[str, type[BaseModel]]) -> Any:
     """A mapping with one key: a name, or a class by its place."""
     config = ConfigDict(extra="allow", json_schema_extra={"minProperties": 1, "maxProperties": 1})
     fields: Any = {name: (settings | None, None) for name, settings in classes.items()}
     return create_model(title, __config__=config, **fields)
 
 
-def _classes(table: Table) -> dict[str, type[BaseModel]]:
+def _classes(table: Table) -> dict[str, type[Settings]]:
     """The classes that can be imported here."""
-    found: dict[str, type[BaseModel]] = {}
+    found: dict[str, type[Settings]] = {}
     for name, target in table.targets().items():
         try:
             found[name] = load(table, name, load_kind(name).conditions if table is KIND else target)

@@ -20,6 +20,7 @@ from fogbench.planners import PLANNERS
 from fogbench.planners.astar import search
 from fogbench.worlds.conditions import BudgetSettings, Tasks
 from fogbench.worlds.grid.conditions import GridConditions
+from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.movingai import MovingAI
 from fogbench.worlds.types import BLOCKED, FREE, Agent, AgentSettings, Observation
@@ -51,8 +52,8 @@ def decisions(settings: AgentSettings) -> Iterator[tuple[Agent, Observation]]:
         world, record = episode_world(DENSE, episode), Record()
         start_and_roll(world, settings, DENSE, episode, record, None)
         agent = settings.start(world.task, episode_stream(DENSE, "agent", episode))
-        moments = retrace(DENSE, episode, np.array(record.actions))
-        for moment in islice(moments, len(record.actions)):
+        row = {"episode": episode, "steps": len(record.actions), "actions": record.actions}
+        for moment in islice(retrace(DENSE, row), len(record.actions)):
             yield agent, moment.observation
 
 
@@ -60,6 +61,6 @@ def test_search(benchmark: BenchmarkFixture) -> None:
     """A* over at least 800 cells of a fully known 512x512 map: a city's, or blobs where its file is not at hand."""
     family = CITY or BLOBS
     benchmark.group = f"A* 512x512 {type(family).__name__}"
-    world = family.sample(np.random.default_rng(0), 0, LONG)
+    world = cast(GridWorld, family.sample(np.random.default_rng(0), 0, LONG))
     known = np.where(world.blocked, np.uint8(BLOCKED), np.uint8(FREE))  # [H, W]
     benchmark(search, known, world.start, world.task.goal)

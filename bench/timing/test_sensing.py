@@ -1,6 +1,7 @@
 """Seeing and remembering, once per step of every episode."""
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -9,13 +10,13 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from fogbench.worlds.conditions import BudgetSettings
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.grid.rules import SquareView
-from fogbench.worlds.grid.world import GridState
+from fogbench.worlds.grid.world import GridState, GridWorld
 from fogbench.worlds.maps.cells import fuse
 from fogbench.worlds.maps.families.blobs import Blobs
 
 CONDITIONS = GridConditions(budget=BudgetSettings(steps=80))
 RNG = np.random.default_rng(0)
-WORLD = Blobs(size=64, obstacles=(60, 140), obstacle_size=(1, 6)).sample(RNG, 0, CONDITIONS)
+WORLD = cast(GridWorld, Blobs(size=64, obstacles=(60, 140), obstacle_size=(1, 6)).sample(RNG, 0, CONDITIONS))
 MIDDLE = GridState(0, (32, 32), blocked=False, witnessed=True)
 
 

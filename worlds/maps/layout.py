@@ -27,7 +27,10 @@ class Layout(NamedTuple):
 
 
 class CellConditions(Protocol):
-    """**Protocol:** conditions of any kind whose worlds can be made from a map of cells."""
+    """**Protocol:** conditions of any kind whose worlds can be made from a map of cells; they are hashable."""
+
+    def __hash__(self) -> int:
+        """Equal conditions have equal ones."""
 
     def world(self, layout: Layout, start: Cell, goal: Cell) -> World | None:
         """The world of one task, or None where it does not fit these conditions."""

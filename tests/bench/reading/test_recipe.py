@@ -17,7 +17,8 @@ from fogbench.worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"
-KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, kind, sensor, rules, tasks, budget, variants, lessons"
+BLOCKS = "sensor, rules, tasks, budget"
+KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, kind, {BLOCKS}, variants, lessons"
 CHECKPOINTS = ", ".join(["none", *sorted(card.stem for card in SHIPPED.glob("*.json"))])
 SETTINGS = f"one of {', '.join(Macn.model_fields)}"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fogbench import GridConditions, Layout, Probability, SquareMaps
+from fogbench import CellConditions, Layout, Probability, SquareMaps
 
 
 class Salt(SquareMaps):
@@ -10,7 +10,7 @@ class Salt(SquareMaps):
 
     share: Probability
 
-    def draw(self, rng: np.random.Generator, conditions: GridConditions) -> Layout:
+    def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A map."""
         del conditions
         return Layout(rng.random((self.size, self.size)) < self.share)  # [H, W]

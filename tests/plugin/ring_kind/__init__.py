@@ -1,0 +1,12 @@
+"""A kind of world of another package: a ring of numbered stations, some links of which are cut."""
+
+from fogbench import Kind, Reference
+
+RING = Kind(
+    "ring_kind.conditions:RingConditions",
+    unit="links",
+    maps="grid",
+    rehearsal="\nmaps: {stations: {size: 9, cut: 0.5}}\nbudget: {steps: 20}\n",
+)
+
+REFERENCE = Reference("the shorter way", "ring_kind.walker:Walker")
