@@ -1,8 +1,9 @@
 """From an interface to the controls of a memory access, forward and back."""
 
 from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.kernels.functions import decay, sigmoid, softplus
+from fogbench.learned.kernels.instructions import at, put
 from fogbench.learned.kernels.lane_arrays import lay, softmax, softmax_back, unlay
-from fogbench.learned.kernels.lanes import at, decay, put, sigmoid, softplus
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from fogbench.learned.dnc.access import EPSILON, AccessState
 from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.kernels.instructions import at, full, put, until
 from fogbench.learned.kernels.lane_arrays import add, zeros
-from fogbench.learned.kernels.lanes import LANES, at, full, put, until
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 

@@ -3,8 +3,8 @@
 from typing import Any
 
 from fogbench.learned.dnc.access import EPSILON
+from fogbench.learned.kernels.instructions import at, full, put, root
 from fogbench.learned.kernels.lane_arrays import add, softmax, softmax_back
-from fogbench.learned.kernels.lanes import at, full, put, root
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 

@@ -18,8 +18,8 @@ from torch.nn.functional import linear
 
 from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD, squash, squash_back
 from fogbench.learned.dnc.heads import controller_shapes
-from fogbench.learned.kernels.lanes import LANES, NUMBERS
-from fogbench.learned.kernels.native import blockwise, run
+from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.native import NUMBERS, blockwise, run
 
 
 class Controller(nn.Module):

@@ -4,7 +4,9 @@ from typing import Any
 
 from numba import carray  # type: ignore[attr-defined]  # it does
 
-from fogbench.learned.kernels.lanes import LANES, at, put, sigmoid, tanh
+from fogbench.learned.kernels.functions import sigmoid, tanh
+from fogbench.learned.kernels.instructions import at, put
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.native import job, pointer
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array

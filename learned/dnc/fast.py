@@ -16,8 +16,7 @@ from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import JOB
 from fogbench.learned.dnc.layout import Buffers, Layout, layout
 from fogbench.learned.dnc.step import backward, forward, relink
-from fogbench.learned.kernels.lanes import NUMBERS
-from fogbench.learned.kernels.native import blockwise, run
+from fogbench.learned.kernels.native import NUMBERS, blockwise, run
 
 
 def fast_access(

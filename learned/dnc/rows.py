@@ -3,8 +3,9 @@
 import numpy as np
 
 from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, lay
-from fogbench.learned.kernels.lanes import LANES, at, full, put
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 

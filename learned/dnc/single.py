@@ -18,9 +18,9 @@ from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import SIZES, STATES, interface_size, sizes_of, state_of, tape_size, taped
 from fogbench.learned.dnc.layout import Packed, layout
 from fogbench.learned.dnc.step import step
-from fogbench.learned.kernels.lanes import LANES, NUMBERS
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.linear import apply
-from fogbench.learned.kernels.native import job, matrix, run, vector
+from fogbench.learned.kernels.native import NUMBERS, job, matrix, run, vector
 from fogbench.worlds.kernel import callback, kernel
 from fogbench.worlds.types import Array
 

@@ -16,9 +16,12 @@ import torch
 from llvmlite import ir
 from numba import carray, types  # type: ignore[attr-defined]  # it has both
 
-from fogbench.learned.kernels.lanes import instruction
+from fogbench.learned.kernels.instructions import instruction
 from fogbench.worlds.kernel import callback, kernel
 from fogbench.worlds.types import Array
+
+NUMBERS: dict[torch.dtype, Any] = {torch.float32: np.float32, torch.float64: np.float64}
+"""What kernels call the numbers of tensors."""
 
 _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP library and its stand-ins
 

@@ -11,8 +11,8 @@ import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from fogbench.learned.kernels.lanes import LANES, NUMBERS
-from fogbench.learned.kernels.native import run
+from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.native import NUMBERS, run
 from fogbench.learned.value_iteration.backward import backward
 from fogbench.learned.value_iteration.forward import forward
 from fogbench.learned.value_iteration.planes import plane_size
