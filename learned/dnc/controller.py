@@ -16,10 +16,9 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 from torch.nn.functional import linear
 
-from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD, squash, squash_back
+from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD
 from fogbench.learned.dnc.heads import controller_shapes
 from fogbench.learned.kernels.lanes import LANES
-from fogbench.learned.kernels.native import NUMBERS, blockwise, run
 
 
 class Controller(nn.Module):
@@ -59,9 +58,8 @@ class _Fast(Function):
         cell = cell.contiguous()
         gates = product(inputs, weight, bias)
         h, c, tanh = cell.new_empty(3, *cell.shape)
-        arrays = (part.data_ptr() for part in (gates, cell, h, c, tanh))
-        loop = blockwise(squash, FORWARD, NUMBERS[gates.dtype])
-        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        size = cell.shape[-1]
+        FORWARD.run(gates.dtype, cell.numel() // size, (size,), (gates, cell, h, c, tanh))
         ctx.save_for_backward(inputs, weight, cell, gates, tanh)
         return h, c
 
@@ -70,9 +68,8 @@ class _Fast(Function):
     def backward(ctx: Any, d_h: Tensor, d_c: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         inputs, weight, cell, gates, tanh = ctx.saved_tensors
         d_h, d_c, d_gates, d_cell = d_h.contiguous(), d_c.contiguous(), torch.empty_like(gates), torch.empty_like(cell)
-        arrays = (part.data_ptr() for part in (gates, cell, d_h, d_c, tanh, d_gates, d_cell))
-        loop = blockwise(squash_back, BACKWARD, NUMBERS[gates.dtype])
-        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        size = cell.shape[-1]
+        BACKWARD.run(gates.dtype, cell.numel() // size, (size,), (gates, cell, d_h, d_c, tanh, d_gates, d_cell))
         rows, d_rows = inputs.reshape(-1, inputs.shape[-1]), d_gates.reshape(-1, d_gates.shape[-1])
         return product(d_gates, weight.T), product(d_rows.T, rows.T), d_rows.sum(0), d_cell
 
