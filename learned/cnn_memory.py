@@ -9,7 +9,7 @@ from torch.nn.functional import pad
 from fogbench.learned.encoding.grid import CHANNELS, Inputs
 from fogbench.learned.memory import Remembering, RememberingNetwork
 from fogbench.learned.policy import Size
-from fogbench.learned.value_iteration.value_iteration import ACTIONS
+from fogbench.learned.value_iteration.sizes import ACTIONS
 
 ALIKE = 16
 """Batches are filled up to a multiple: a batch shrinks as its episodes end, and oneDNN prepares for each new size."""

@@ -10,7 +10,7 @@ from torch import Tensor
 from fogbench.learned.encoding.grid import Inputs
 from fogbench.learned.macn_single import Weights, see
 from fogbench.learned.memory import Remembering, RememberingNetwork
-from fogbench.learned.value_iteration.value_iteration import ACTIONS
+from fogbench.learned.value_iteration.sizes import ACTIONS
 from fogbench.learned.vin import Planning
 
 

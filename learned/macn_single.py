@@ -15,9 +15,8 @@ from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
 from fogbench.learned.encoding.grid import CHANNELS, COMPASS, SEEN, Inputs
-from fogbench.learned.kernels.lanes import NUMBERS
 from fogbench.learned.kernels.linear import apply
-from fogbench.learned.kernels.native import job, matrix, pointer, run, vector
+from fogbench.learned.kernels.native import NUMBERS, job, matrix, pointer, run, vector
 from fogbench.learned.value_iteration.forward import correlate, forward_block
 from fogbench.learned.value_iteration.planes import pack, plane_size, planes, unpack
 from fogbench.worlds.kernel import callback, kernel

@@ -5,13 +5,13 @@ from typing import Any, Literal, NamedTuple, cast
 import torch
 from torch import Tensor, nn
 
-from fogbench.learned.dnc.access import Heads
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.encoding.grid import COMPASS, SEEN, Inputs
 from fogbench.learned.network import Network
 from fogbench.learned.policy import Policy, Size
-from fogbench.learned.value_iteration.value_iteration import ACTIONS
+from fogbench.learned.value_iteration.sizes import ACTIONS
 
 
 class Remembering(Policy):

@@ -11,7 +11,8 @@ from torch import Tensor, nn
 from fogbench.learned.encoding.grid import CHANNELS, Inputs
 from fogbench.learned.network import Network
 from fogbench.learned.policy import Policy
-from fogbench.learned.value_iteration.value_iteration import ACTIONS, ValueIteration
+from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.value_iteration.value_iteration import ValueIteration
 from fogbench.worlds.settings import Probability
 
 

@@ -1,8 +1,9 @@
 """From an interface to the controls of a memory access, forward and back."""
 
-from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.dnc.job import Sizes, head_size
+from fogbench.learned.kernels.functions import decay, sigmoid, softplus
+from fogbench.learned.kernels.instructions import at, put
 from fogbench.learned.kernels.lane_arrays import lay, softmax, softmax_back, unlay
-from fogbench.learned.kernels.lanes import at, decay, put, sigmoid, softplus
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
@@ -10,16 +11,16 @@ from fogbench.worlds.types import Array
 @kernel
 def activate(sizes: Sizes, interface: Array, write_heads: Array, read_heads: Array) -> None:
     """The controls in an interface: strengths by softplus, gates and erase vectors by sigmoid, modes by softmax."""
-    word, _, readers, writers, linked = sizes
+    word, _, readers, writers, _ = sizes
     lay(interface[:, : len(write_heads)], write_heads)
     lay(interface[:, len(write_heads) :], read_heads)
-    size = 3 * word + 3
+    size = head_size(write_heads, writers)
     for i in range(writers):
         head = write_heads[i * size : (i + 1) * size]
         put(head, word, softplus(at(head, word)))
         for k in range(2 * word + 1, size):
             put(head, k, sigmoid(at(head, k)))
-    size = word + 2 * linked + 3
+    size = head_size(read_heads, readers)
     for j in range(readers):
         head = read_heads[j * size : (j + 1) * size]
         put(head, word, softplus(at(head, word)))
@@ -32,14 +33,14 @@ def activate_back(
     sizes: Sizes, write_heads: Array, read_heads: Array, d_write_heads: Array, d_read_heads: Array, d_interface: Array
 ) -> None:
     """Back through `activate`."""
-    word, _, readers, writers, linked = sizes
-    size = 3 * word + 3
+    word, _, readers, writers, _ = sizes
+    size = head_size(write_heads, writers)
     for i in range(writers):
         head, d_head = write_heads[i * size : (i + 1) * size], d_write_heads[i * size : (i + 1) * size]
         put(d_head, word, at(d_head, word) * (1 - decay(at(head, word))))
         for k in range(2 * word + 1, size):
             put(d_head, k, at(d_head, k) * at(head, k) * (1 - at(head, k)))
-    size = word + 2 * linked + 3
+    size = head_size(read_heads, readers)
     for j in range(readers):
         head, d_head = read_heads[j * size : (j + 1) * size], d_read_heads[j * size : (j + 1) * size]
         free = at(head, word + 1)

@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 
 from fogbench.learned.dnc.access import EPSILON, AccessState
-from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.dnc.job import Sizes, head_size
+from fogbench.learned.kernels.instructions import at, full, put, until
 from fogbench.learned.kernels.lane_arrays import add, zeros
-from fogbench.learned.kernels.lanes import LANES, at, full, put, until
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -15,14 +16,15 @@ from fogbench.worlds.types import Array
 @fused
 def use(sizes: Sizes, read_heads: Array, old: AccessState[Array], usage: Array) -> None:
     """Rows written before are used, rows read before and freed are not."""
-    word, rows, readers, writers, linked = sizes
+    word, rows, readers, writers, _ = sizes
+    size = head_size(read_heads, readers)
     for n in range(rows):
         unused = 1 - at(old.usage, n)
         for i in range(writers):
             unused *= 1 - at(old.write_weights, i * rows + n)
         used = 1 - unused
         for j in range(readers):
-            used *= 1 - at(read_heads, j * (word + 2 * linked + 3) + word + 1) * at(old.read_weights, j * rows + n)
+            used *= 1 - at(read_heads, j * size + word + 1) * at(old.read_weights, j * rows + n)
         put(usage, n, used)
 
 
@@ -32,8 +34,8 @@ def use_back(
     d_old_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `use`, which takes past write weightings as given; adds to `d_before`."""
-    word, rows, readers, writers, linked = sizes
-    size = word + 2 * linked + 3
+    word, rows, readers, writers, _ = sizes
+    size = head_size(heads, readers)
     for n in range(rows):
         unwritten = full(heads, 1)
         for i in range(writers):
@@ -55,12 +57,12 @@ def use_back(
 @fused
 def allocate(sizes: Sizes, heads: Array, usage: Array, similar: Array, before: Array, weights: Array) -> None:
     """The write weightings; a head sees as used what the heads before it are allocated."""
-    word, rows, _, writers, _ = sizes
-    used = np.empty((rows, LANES), usage.dtype)
+    _, rows, _, writers, _ = sizes
+    size, used = head_size(heads, writers), np.empty((rows, LANES), usage.dtype)
     for n in range(rows):
         put(used, n, raised(at(usage, n)))
     for i in range(writers):
-        allocation, gate = at(heads, (i + 1) * (3 * word + 3) - 2), at(heads, (i + 1) * (3 * word + 3) - 1)
+        allocation, gate = at(heads, (i + 1) * size - 2), at(heads, (i + 1) * size - 1)
         precede(used, before[i * rows :])
         for n in range(rows):
             k, u = i * rows + n, at(used, n)
@@ -75,17 +77,17 @@ def allocate_back(
     d_heads: Array, d_similar: Array, d_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `allocate`, from the last head to the first; adds to `d_usage`."""
-    word, rows, _, writers, _ = sizes
-    used, d_used = np.empty((writers * rows, LANES), usage.dtype), zeros(usage)
+    _, rows, _, writers, _ = sizes
+    size, used, d_used = head_size(heads, writers), np.empty((writers * rows, LANES), usage.dtype), zeros(usage)
     d_free = np.empty((rows, LANES), usage.dtype)
     for n in range(rows):
         u = raised(at(usage, n))
         for i in range(writers):
-            head = (i + 1) * (3 * word + 3)
+            head = (i + 1) * size
             put(used, i * rows + n, u)
             u += (1 - u) * at(heads, head - 2) * at(heads, head - 1) * (1 - u) * at(before, i * rows + n)
     for i in range(writers - 1, -1, -1):
-        head = (i + 1) * (3 * word + 3)
+        head = (i + 1) * size
         allocation, gate = at(heads, head - 2), at(heads, head - 1)
         d_allocation, d_gate, d_both = full(heads, 0), full(heads, 0), full(heads, 0)
         for n in range(rows):

@@ -3,8 +3,9 @@
 from typing import Any
 
 from fogbench.learned.dnc.access import EPSILON
+from fogbench.learned.dnc.job import head_size
+from fogbench.learned.kernels.instructions import at, full, put, root
 from fogbench.learned.kernels.lane_arrays import add, softmax, softmax_back
-from fogbench.learned.kernels.lanes import at, full, put, root
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -12,7 +13,7 @@ from fogbench.worlds.types import Array
 @fused
 def address(word: int, count: int, heads: Array, memory: Array, lengths: Array, similar: Array) -> None:
     """The weightings by cosine similarity of keys and rows, and the rows' lengths."""
-    rows, size = len(lengths), len(heads) // count
+    rows, size = len(lengths), head_size(heads, count)
     for n in range(rows):
         put(lengths, n, length(memory[n:], word, rows))
     for i in range(count):
@@ -29,7 +30,7 @@ def address_back(
     d_heads: Array, d_memory: Array,
 ) -> None:  # fmt: skip
     """Back through `address`; uses `d_similar` up, adds to `d_memory` and to the keys of `d_heads`."""
-    rows, size = len(lengths), len(heads) // count
+    rows, size = len(lengths), head_size(heads, count)
     for i in range(count):
         head, d_head = heads[i * size : (i + 1) * size], d_heads[i * size : (i + 1) * size]
         own, strength = length(head, word, 1), at(head, word)
@@ -54,7 +55,7 @@ def address_back(
 @fused
 def recall(count: int, heads: Array, similar: Array, weights: Array) -> None:
     """The share of content in the read weightings: a head's last mode."""
-    rows, size = len(similar) // count, len(heads) // count
+    rows, size = len(similar) // count, head_size(heads, count)
     for j in range(count):
         content = at(heads, (j + 1) * size - 1)
         for n in range(j * rows, (j + 1) * rows):
@@ -64,7 +65,7 @@ def recall(count: int, heads: Array, similar: Array, weights: Array) -> None:
 @fused
 def recall_back(count: int, heads: Array, similar: Array, d_weights: Array, d_heads: Array, d_similar: Array) -> None:
     """Back through `recall`."""
-    rows, size = len(similar) // count, len(heads) // count
+    rows, size = len(similar) // count, head_size(heads, count)
     for j in range(count):
         content, d_content = at(heads, (j + 1) * size - 1), full(heads, 0)
         for n in range(j * rows, (j + 1) * rows):

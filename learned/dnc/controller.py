@@ -16,9 +16,9 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 from torch.nn.functional import linear
 
-from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD, squash, squash_back
-from fogbench.learned.kernels.lanes import LANES, NUMBERS
-from fogbench.learned.kernels.native import blockwise, run
+from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD
+from fogbench.learned.dnc.heads import controller_shapes
+from fogbench.learned.kernels.lanes import LANES
 
 
 class Controller(nn.Module):
@@ -31,10 +31,10 @@ class Controller(nn.Module):
     def __init__(self, inputs: int, hidden: int) -> None:
         """Draw the weights."""
         super().__init__()
-        bound = hidden**-0.5
+        bound, sizes = hidden**-0.5, controller_shapes(inputs, hidden)
         self.hidden = hidden
-        self.weight = nn.Parameter(torch.empty(4 * hidden, inputs + hidden).uniform_(-bound, bound))
-        self.bias = nn.Parameter(torch.empty(4 * hidden).uniform_(-bound, bound))
+        self.weight = nn.Parameter(torch.empty(sizes["weight"]).uniform_(-bound, bound))
+        self.bias = nn.Parameter(torch.empty(sizes["bias"]).uniform_(-bound, bound))
         with torch.no_grad():
             self.bias[hidden : 2 * hidden] += 1
 
@@ -58,9 +58,8 @@ class _Fast(Function):
         cell = cell.contiguous()
         gates = product(inputs, weight, bias)
         h, c, tanh = cell.new_empty(3, *cell.shape)
-        arrays = (part.data_ptr() for part in (gates, cell, h, c, tanh))
-        loop = blockwise(squash, FORWARD, NUMBERS[gates.dtype])
-        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        size = cell.shape[-1]
+        FORWARD.run(gates.dtype, cell.numel() // size, (size,), (gates, cell, h, c, tanh))
         ctx.save_for_backward(inputs, weight, cell, gates, tanh)
         return h, c
 
@@ -69,9 +68,8 @@ class _Fast(Function):
     def backward(ctx: Any, d_h: Tensor, d_c: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         inputs, weight, cell, gates, tanh = ctx.saved_tensors
         d_h, d_c, d_gates, d_cell = d_h.contiguous(), d_c.contiguous(), torch.empty_like(gates), torch.empty_like(cell)
-        arrays = (part.data_ptr() for part in (gates, cell, d_h, d_c, tanh, d_gates, d_cell))
-        loop = blockwise(squash_back, BACKWARD, NUMBERS[gates.dtype])
-        run(loop, cell.numel() // cell.shape[-1], cell.shape[-1], *arrays)
+        size = cell.shape[-1]
+        BACKWARD.run(gates.dtype, cell.numel() // size, (size,), (gates, cell, d_h, d_c, tanh, d_gates, d_cell))
         rows, d_rows = inputs.reshape(-1, inputs.shape[-1]), d_gates.reshape(-1, d_gates.shape[-1])
         return product(d_gates, weight.T), product(d_rows.T, rows.T), d_rows.sum(0), d_cell
 

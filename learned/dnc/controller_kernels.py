@@ -4,14 +4,12 @@ from typing import Any
 
 from numba import carray  # type: ignore[attr-defined]  # it does
 
-from fogbench.learned.kernels.lanes import LANES, at, put, sigmoid, tanh
-from fogbench.learned.kernels.native import job, pointer
+from fogbench.learned.kernels.functions import sigmoid, tanh
+from fogbench.learned.kernels.instructions import at, put
+from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.native import Loop, job, pointer
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
-
-FORWARD = job("hidden", "gates", "cell", "h", "c", "tanh")
-BACKWARD = job("hidden", "gates", "cell", "d_h", "d_c", "tanh", "d_gates", "d_cell")
-"""The size H, then addresses: gates [B, 4 * H], all others [B, H]; `cell` is that before the step."""
 
 
 @kernel
@@ -75,3 +73,9 @@ def squash_sample_back(
         put(d_gates, 2 * count + k, d_new * write * (1 - candidate * candidate))
         put(d_gates, 3 * count + k, g * t * output * (1 - output))
         put(d_cell, k, d_new * forget)
+
+
+FORWARD = Loop(squash, job("hidden", "gates", "cell", "h", "c", "tanh"))
+BACKWARD = Loop(squash_back, job("hidden", "gates", "cell", "d_h", "d_c", "tanh", "d_gates", "d_cell"))
+"""The size H, then addresses: gates [B, 4 * H], all others [B, H]; `cell` is that before the step. A block is a sample.
+"""

@@ -11,12 +11,10 @@ from torch import Tensor
 from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
-from fogbench.learned.dnc.access import AccessState, Heads
-from fogbench.learned.dnc.job import JOB
+from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.layout import Buffers, Layout, layout
-from fogbench.learned.dnc.step import backward, forward, relink
-from fogbench.learned.kernels.lanes import NUMBERS
-from fogbench.learned.kernels.native import blockwise, run
+from fogbench.learned.dnc.step import BACKWARD, FORWARD, RELINK
 
 
 def fast_access(
@@ -43,8 +41,7 @@ def _step(lies: Layout, old: Buffers, interface: Tensor) -> tuple[Buffers, Tenso
     """The state after, the reads, and the tape."""
     new, reads, tape = lies.empty(interface), interface.new_empty(lies.reads), interface.new_empty(lies.tape)
     interface = interface.contiguous()
-    arrays = interface.data_ptr(), *old.addresses, *new.addresses, reads.data_ptr(), tape.data_ptr()
-    run(blockwise(forward, JOB, NUMBERS[tape.dtype]), lies.blocks, *lies.sizes, *arrays)
+    FORWARD.run(tape.dtype, lies.blocks, lies.sizes, (interface, *old, *new, reads, tape))
     return new, reads, tape
 
 
@@ -66,11 +63,8 @@ class _Step(Function):
         lies, links, d_reads = ctx.layout, links_before(ctx), d_reads.contiguous()
         d_new, d_old = lies.buffers(AccessState(*d_state)), lies.empty(d_reads)
         d_interface = d_reads.new_empty(ctx.interface)
-        arrays = (
-            0, ctx.old.data_ptr(), links.data_ptr(), ctx.new.data_ptr(), 0, 0, ctx.tape.data_ptr(),
-            d_reads.data_ptr(), *d_new.addresses, *d_old.addresses, d_interface.data_ptr(),
-        )  # fmt: skip
-        run(blockwise(backward, JOB, NUMBERS[ctx.tape.dtype]), lies.blocks, *lies.sizes, *arrays)
+        tensors = None, ctx.old, links, ctx.new, None, None, ctx.tape, d_reads, *d_new, *d_old, d_interface
+        BACKWARD.run(d_reads.dtype, lies.blocks, lies.sizes, tensors)
         forget_links(ctx)
         return None, None, None, d_interface, *lies.views(d_old)
 
@@ -87,8 +81,8 @@ def links_before(step: Any) -> Tensor:
     if step.links is None:
         before, links_then = step.previous, links_before(step.previous)
         step.links = links_then.new_empty(links_then.shape)
-        arrays = 0, before.old.data_ptr(), links_then.data_ptr(), before.new.data_ptr(), step.links.data_ptr()
-        run(blockwise(relink, JOB, NUMBERS[step.tape.dtype]), step.layout.blocks, *step.layout.sizes, *arrays)
+        tensors = None, before.old, links_then, before.new, step.links
+        RELINK.run(links_then.dtype, step.layout.blocks, step.layout.sizes, tensors)
     links: Tensor = step.links
     return links
 

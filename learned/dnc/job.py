@@ -12,11 +12,13 @@ Words used here
     d_x          the gradient of the loss by x
 """
 
-from typing import Any, NamedTuple
+from math import prod
+from typing import Any, Generic, NamedTuple
 
 from numba import carray  # type: ignore[attr-defined]  # it does
 
-from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.access import AccessState, T
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.native import job, pointer
 from fogbench.worlds.kernel import kernel
@@ -24,7 +26,31 @@ from fogbench.worlds.types import Array
 
 Sizes = tuple[int, int, int, int, int]
 
-SIZES = "samples", "pitch", "word", "rows", "reads", "writes", "linked"
+
+class Tape(NamedTuple, Generic[T]):
+    """What a step leaves for its way back."""
+
+    write_heads: T
+    read_heads: T
+    before: T
+    write_similar: T
+    read_similar: T
+    old_lengths: T
+    """[N], the norms of the memory's rows before the step."""
+    new_lengths: T
+    """[N], after it."""
+
+
+def tape_sizes(heads: Heads, rows: int) -> Tape[int]:
+    """How many numbers of a sample each part has."""
+    writers, readers = map(prod, heads.interface_shapes)
+    write, read = heads.writes * rows, heads.reads * rows
+    return Tape(writers, readers, write, write, read, rows, rows)
+
+
+ENDS = tuple(f"{part}_end" for part in (*AccessState._fields, *Tape._fields))
+"""Where the parts of a state and of a tape end, each in its buffer, where it follows on the part before."""
+SIZES = "samples", "pitch", "interface_size", "word", "rows", "reads", "writes", "linked", *ENDS
 STATES = "old", "old_links", "new", "new_links"
 JOB = job(
     *SIZES, "interface", *STATES, "read", "tape",
@@ -35,20 +61,6 @@ where the samples stand side by side, `pitch` numbers from row to row; what is r
 and gradients by these."""
 
 
-class Tape(NamedTuple):
-    """What a step leaves for its way back."""
-
-    write_heads: Array
-    read_heads: Array
-    before: Array
-    write_similar: Array
-    read_similar: Array
-    old_lengths: Array
-    """[N], the norms of the memory's rows before the step."""
-    new_lengths: Array
-    """[N], after it."""
-
-
 @kernel
 def sizes_of(job: Any) -> Sizes:
     """The sizes in a job."""
@@ -56,10 +68,9 @@ def sizes_of(job: Any) -> Sizes:
 
 
 @kernel
-def interface_size(sizes: Sizes) -> int:
-    """`I`."""
-    word, _, reads, writes, linked = sizes
-    return writes * (3 * word + 3) + reads * (word + 2 * linked + 3)
+def head_size(heads: Array, count: int) -> int:
+    """How many numbers each of so many heads has."""
+    return len(heads) // count
 
 
 @kernel
@@ -78,36 +89,33 @@ def block_of(number: Any, address: int, rows: int, job: Any, block: int) -> Arra
 @kernel
 def state_of(number: Any, state: int, links: int, job: Any, block: int) -> AccessState[Array]:
     """A block of a state, of the addresses of its links and of all else."""
-    word, rows, reads, writes, linked = sizes_of(job)
-    a = word * rows
-    b = a + reads * rows
-    c = b + writes * rows
-    d = c + rows
-    rest = block_of(number, state, d + linked * rows, job, block)
-    own = block_of(number, links, linked * rows * rows, job, block)
-    return AccessState(rest[:a], rest[a:b], rest[b:c], rest[c:d], own, rest[d:])
+    rest = block_of(number, state, job.precedence_end, job, block)
+    own = block_of(number, links, job.links_end, job, block)
+    return AccessState(
+        rest[: job.memory_end],
+        rest[job.memory_end : job.read_weights_end],
+        rest[job.read_weights_end : job.write_weights_end],
+        rest[job.write_weights_end : job.usage_end],
+        own,
+        rest[job.usage_end :],
+    )
 
 
 @kernel
-def tape_of(number: Any, job: Any, block: int) -> Tape:
+def tape_of(number: Any, job: Any, block: int) -> Tape[Array]:
     """A block of the tape."""
-    return taped(sizes_of(job), block_of(number, job.tape, tape_size(sizes_of(job)), job, block))
+    return taped(job, block_of(number, job.tape, job.new_lengths_end, job, block))
 
 
 @kernel
-def tape_size(sizes: Sizes) -> int:
-    """Rows of a tape."""
-    _, rows, reads, writes, _ = sizes
-    return interface_size(sizes) + rows * (2 * writes + reads + 2)
-
-
-@kernel
-def taped(sizes: Sizes, tape: Array) -> Tape:
+def taped(job: Any, tape: Array) -> Tape[Array]:
     """The parts of a tape."""
-    word, rows, reads, writes, _ = sizes
-    a = writes * (3 * word + 3)
-    b = interface_size(sizes)
-    c = b + writes * rows
-    d = c + writes * rows
-    e = d + reads * rows
-    return Tape(tape[:a], tape[a:b], tape[b:c], tape[c:d], tape[d:e], tape[e : e + rows], tape[e + rows :])
+    return Tape(
+        tape[: job.write_heads_end],
+        tape[job.write_heads_end : job.read_heads_end],
+        tape[job.read_heads_end : job.before_end],
+        tape[job.before_end : job.write_similar_end],
+        tape[job.write_similar_end : job.read_similar_end],
+        tape[job.read_similar_end : job.old_lengths_end],
+        tape[job.old_lengths_end :],
+    )

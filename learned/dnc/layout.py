@@ -7,12 +7,15 @@ of one, is used where it lies, at once if it remembers its buffers; anything els
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import accumulate
 from math import prod
 from typing import NamedTuple
 
 from torch import Tensor
 
-from fogbench.learned.dnc.access import AccessState, Heads
+from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.heads import Heads
+from fogbench.learned.dnc.job import tape_sizes
 from fogbench.learned.kernels.lanes import LANES
 
 
@@ -23,11 +26,6 @@ class Buffers(NamedTuple):
     """[rows, pitch], all but the links."""
     links: Tensor
     """[K * N * N, pitch]"""
-
-    @property
-    def addresses(self) -> tuple[int, int]:
-        """Where they begin."""
-        return self.rest.data_ptr(), self.links.data_ptr()
 
 
 class Packed(AccessState[Tensor]):
@@ -49,7 +47,7 @@ class Layout(NamedTuple):
     """How the states of a batch lie."""
 
     sizes: tuple[int, ...]
-    """B, pitch, D, N, R, W, K."""
+    """The first numbers of a job."""
     blocks: int
     """Of 16 samples."""
     rest: tuple[int, int]
@@ -111,14 +109,15 @@ def layout(heads: Heads, rows: int, batch: tuple[int, ...]) -> Layout:
     """
     blocks = -(-prod(batch) // LANES)
     pitch = LANES * (blocks | 1) if blocks else 0
-    views, filled = [], {True: 0, False: 0}
-    for name, part in zip(AccessState._fields, heads.blank(rows), strict=True):
+    views, ends, filled = [], [], {True: 0, False: 0}
+    for name, shape in zip(AccessState._fields, heads.state_shapes(rows), strict=True):
         own = name == "links"
-        strides = tuple(pitch * stride for stride in part.stride())
-        views.append(View((*batch, *part.shape), (1,) * len(batch) + strides, pitch * filled[own]))
-        filled[own] += part.numel()
-    sizes = prod(batch), pitch, heads.word, rows, heads.reads, heads.writes, heads.linked
-    tape = heads.interface + rows * (2 * heads.writes + heads.reads + 2)
+        strides = tuple(pitch * prod(shape[axis + 1 :]) for axis in range(len(shape)))
+        views.append(View((*batch, *shape), (1,) * len(batch) + strides, pitch * filled[own]))
+        filled[own] += prod(shape)
+        ends.append(filled[own])
+    ends.extend(accumulate(tape_sizes(heads, rows)))
+    sizes = prod(batch), pitch, heads.interface, heads.word, rows, heads.reads, heads.writes, heads.linked, *ends
     reads = *batch, heads.reads, heads.word
-    buffers = (filled[False], pitch), (filled[True], pitch), (tape, pitch)
+    buffers = (filled[False], pitch), (filled[True], pitch), (ends[-1], pitch)
     return Layout(sizes, blocks, *buffers, reads, AccessState(*views))

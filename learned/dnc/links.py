@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from fogbench.learned.dnc.access import AccessState
-from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.dnc.job import Sizes, head_size
+from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, clear, zeros
-from fogbench.learned.kernels.lanes import LANES, at, full, put
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -56,7 +57,7 @@ def unwritten(w: Array) -> Any:
 def follow(sizes: Sizes, heads: Array, links: Array, before: Array, weights: Array) -> None:
     """Add what is read backward and forward along the links to the read weightings."""
     word, rows, readers, _, linked = sizes
-    size = word + 2 * linked + 3
+    size = head_size(heads, readers)
     ahead, back = np.empty((readers * rows, LANES), before.dtype), np.empty((readers * rows, LANES), before.dtype)
     for i in range(linked):
         clear(back)
@@ -94,7 +95,7 @@ def links_back(
 ) -> None:  # fmt: skip
     """Back through `follow` and `link`; adds to `d_weights`, and to `d_old` but for the links."""
     word, rows, readers, _, linked = sizes
-    size, before = word + 2 * linked + 3, old.read_weights
+    size, before = head_size(heads, readers), old.read_weights
     ahead, back, d_row = zeros(d_read), zeros(d_read), np.empty((rows, LANES), d_read.dtype)
     pair = np.empty((2 * rows, LANES), d_read.dtype)
     for i in range(linked):

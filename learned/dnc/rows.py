@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from fogbench.learned.dnc.job import Sizes
+from fogbench.learned.dnc.job import Sizes, head_size
+from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, lay
-from fogbench.learned.kernels.lanes import LANES, at, full, put
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -13,11 +14,12 @@ from fogbench.worlds.types import Array
 def write(sizes: Sizes, heads: Array, memory: Array, weights: Array, new_memory: Array) -> None:
     """All heads erase, then all add."""
     word, rows, _, writers, _ = sizes
+    size = head_size(heads, writers)
     for d in range(word):
         for n in range(rows):
             kept, added = at(memory, d * rows + n), full(memory, 0)
             for i in range(writers):
-                head, w = i * (3 * word + 3), at(weights, i * rows + n)
+                head, w = i * size, at(weights, i * rows + n)
                 kept *= 1 - at(heads, head + 2 * word + 1 + d) * w
                 added += at(heads, head + word + 1 + d) * w
             put(new_memory, d * rows + n, kept + added)
@@ -30,7 +32,7 @@ def write_back(
 ) -> None:  # fmt: skip
     """Back through `write`; adds to `d_weights`."""
     word, rows, _, writers, _ = sizes
-    size = 3 * word + 3
+    size = head_size(heads, writers)
     for d in range(word):
         value, erase = word + 1 + d, 2 * word + 1 + d
         for n in range(rows):

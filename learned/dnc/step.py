@@ -1,7 +1,7 @@
 """One step of the memory access and the way back through it, sixteen samples at a time.
 
 The file `access` has the equations and their letters, `kernels/lanes` the numbers: each is that of all samples of a
-block. Each loop does `fogbench.learned.dnc.job.JOB`, of which it needs some fields.
+block. Each loop gets `fogbench.learned.dnc.job.JOB`, of which it needs some fields.
 """
 
 from typing import Any
@@ -12,11 +12,12 @@ from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.activation import activate, activate_back
 from fogbench.learned.dnc.allocation import allocate, allocate_back, use, use_back
 from fogbench.learned.dnc.content import address, address_back, recall, recall_back
-from fogbench.learned.dnc.job import Sizes, Tape, interface_size, samples_of, sizes_of, state_of, tape_of
+from fogbench.learned.dnc.job import JOB, Sizes, Tape, samples_of, sizes_of, state_of, tape_of
 from fogbench.learned.dnc.links import follow, link, links_back
 from fogbench.learned.dnc.rows import read, read_back, write, write_back
 from fogbench.learned.kernels.lane_arrays import clear, same, zeros
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.native import Loop
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 
@@ -26,7 +27,7 @@ def forward(number: Any, job: Any, block: int) -> None:
     """One step; needs the fields as far as `tape`."""
     old = state_of(number, job.old, job.old_links, job, block)
     new = state_of(number, job.new, job.new_links, job, block)
-    interface = samples_of(number, job.interface, interface_size(sizes_of(job)), job, block)
+    interface = samples_of(number, job.interface, job.interface_size, job, block)
     reads = samples_of(number, job.read, job.reads * job.word, job, block)
     step(sizes_of(job), interface, old, new, reads, tape_of(number, job, block))
 
@@ -39,7 +40,7 @@ def backward(number: Any, job: Any, block: int) -> None:
     d_new = state_of(number, job.d_new, job.d_new_links, job, block)
     d_old = state_of(number, job.d_old, job.d_old_links, job, block)
     d_reads = samples_of(number, job.d_read, job.reads * job.word, job, block)
-    d_interface = samples_of(number, job.d_interface, interface_size(sizes_of(job)), job, block)
+    d_interface = samples_of(number, job.d_interface, job.interface_size, job, block)
     step_back(sizes_of(job), old, new, tape_of(number, job, block), d_reads, d_new, d_old, d_interface)
 
 
@@ -54,7 +55,7 @@ def relink(number: Any, job: Any, block: int) -> None:
 
 @kernel
 def step(
-    sizes: Sizes, interface: Array, old: AccessState[Array], new: AccessState[Array], reads: Array, tape: Tape
+    sizes: Sizes, interface: Array, old: AccessState[Array], new: AccessState[Array], reads: Array, tape: Tape[Array]
 ) -> None:
     """One step of one block."""
     word, _, readers, writers, linked = sizes
@@ -72,7 +73,7 @@ def step(
 
 @kernel
 def step_back(
-    sizes: Sizes, old: AccessState[Array], new: AccessState[Array], tape: Tape, d_reads: Array,
+    sizes: Sizes, old: AccessState[Array], new: AccessState[Array], tape: Tape[Array], d_reads: Array,
     d_new: AccessState[Array], d_old: AccessState[Array], d_interface: Array,
 ) -> None:  # fmt: skip
     """Back through one step of one block. The links of `new` are not looked at."""
@@ -101,3 +102,6 @@ def step_back(
     )  # fmt: skip
     use_back(sizes, tape.read_heads, old, d_usage, d_read_heads, d_old.read_weights, d_old.usage)
     activate_back(sizes, tape.write_heads, tape.read_heads, d_write_heads, d_read_heads, d_interface)
+
+
+FORWARD, BACKWARD, RELINK = Loop(forward, JOB), Loop(backward, JOB), Loop(relink, JOB)

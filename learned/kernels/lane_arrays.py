@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from fogbench.learned.kernels.lanes import LANES, at, decay, full, larger, put
+from fogbench.learned.kernels.functions import decay, larger
+from fogbench.learned.kernels.instructions import at, full, put
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 

@@ -7,18 +7,22 @@ microseconds, these cost 1; threads of a second pool would have to wait for PyTo
 
 import ctypes
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from llvmlite import ir
 from numba import carray, types  # type: ignore[attr-defined]  # it has both
+from torch import Tensor
 
-from fogbench.learned.kernels.lanes import instruction
+from fogbench.learned.kernels.instructions import instruction
 from fogbench.worlds.kernel import callback, kernel
 from fogbench.worlds.types import Array
+
+NUMBERS: dict[torch.dtype, Any] = {torch.float32: np.float32, torch.float64: np.float64}
+"""What kernels call the numbers of tensors."""
 
 _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP library and its stand-ins
 
@@ -26,6 +30,51 @@ _PARALLEL = getattr(ctypes.CDLL(None), "GOMP_parallel", None)  # in GNU's OpenMP
 def job(*names: str) -> np.dtype[np.void]:
     """The type of a job: first `next`, the first block that nobody took, and `blocks`, how many there are."""
     return np.dtype([(name, np.int64) for name in ("next", "blocks", *names)])
+
+
+@kernel
+def no_room(_number: Any, _job: Any) -> tuple[()]:
+    """The room of work that needs none."""
+    return ()
+
+
+class Loop(NamedTuple):
+    """Work that is done block by block."""
+
+    work: Callable[..., None]
+    """A kernel, `work(number, job, block, *room)`, which does one block; `number` is the type of the arrays."""
+    form: np.dtype[np.void]
+    """The type of its jobs: sizes, then addresses."""
+    room: Callable[..., tuple[Any, ...]] = no_room
+    """A kernel, `room(number, job)`, whose arrays a thread has for all its blocks."""
+
+    def run(self, number: torch.dtype, blocks: int, sizes: Iterable[int], tensors: Iterable[Tensor | None]) -> None:
+        """Do all blocks of a job.
+
+        Args:
+            number: float32 or float64.
+            blocks: how many blocks there are.
+            sizes: the first numbers of the job.
+            tensors: those whose addresses are the others; each is contiguous, and 0 stands for None.
+        """
+        addresses = [0 if tensor is None else tensor.data_ptr() for tensor in tensors]
+        run(compiled(self, NUMBERS[number]), blocks, *sizes, *addresses)
+
+
+@lru_cache
+def compiled(loop: Loop, number: type[np.floating[Any]]) -> int:
+    """The address of a loop for a type of numbers."""
+    work, form, room = loop
+
+    def blockwise(address: Any) -> None:
+        job = carray(address, 1, form)[0]
+        own = room(number, job)
+        block = take(address)
+        while block < job.blocks:
+            work(number, job, block, *own)
+            block = take(address)
+
+    return callback(blockwise)
 
 
 def run(loop: int, blocks: int, *numbers: int) -> None:
@@ -40,20 +89,6 @@ def run(loop: int, blocks: int, *numbers: int) -> None:
 
 
 _LOOP = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
-
-
-@lru_cache
-def blockwise(work: Callable[..., None], form: np.dtype[np.void], number: type[np.floating[Any]]) -> int:
-    """The address of the loop that does `work(number, job, block)`, a kernel, for each block that it takes."""
-
-    def loop(address: Any) -> None:
-        job = carray(address, 1, form)[0]
-        block = take(address)
-        while block < job.blocks:
-            work(number, job, block)
-            block = take(address)
-
-    return callback(loop)
 
 
 @instruction

@@ -1,38 +1,31 @@
 """The gradients of value iteration, in blocks of samples; the words are those of the file `planes`."""
 
-from functools import lru_cache
 from typing import Any
 
-import numpy as np
-from numba import carray  # type: ignore[attr-defined]  # it does
-
-from fogbench.learned.kernels.native import take
-from fogbench.learned.value_iteration.job import BACKWARD, history_of, maps_of, weights_of
+from fogbench.learned.kernels.native import Loop
+from fogbench.learned.value_iteration.job import BACKWARD_JOB, history_of, maps_of, weights_of
 from fogbench.learned.value_iteration.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
-from fogbench.worlds.kernel import callback, fused, kernel, summing
+from fogbench.worlds.kernel import fused, kernel, summing
 from fogbench.worlds.types import Array
 
 
-@lru_cache
-def backward(number: type[np.floating[Any]]) -> int:
-    """The address of the loop of the gradients for a type of numbers."""
+@kernel
+def room(number: Any, job: Any) -> tuple[Array]:
+    """Nine planes."""
+    return (planes(9, plane_size(job.lanes, job.height, job.width), number),)
 
-    def loop(address: Any) -> None:
-        job = carray(address, 1, BACKWARD)[0]
-        scratch = planes(9, plane_size(job.lanes, job.height, job.width), number)
-        block = take(address)
-        while block < job.blocks:
-            values, choices = history_of(number, block, job)
-            backward_block(
-                job.lanes, block * job.lanes,
-                maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
-                scratch, values, choices, maps_of(number, job.dq, 4, job), maps_of(number, job.dv, 1, job),
-                maps_of(number, job.dreward, job.channels, job), maps_of(number, job.dbarrier, 4, job),
-                weights_of(number, job.dweights, block, job),
-            )  # fmt: skip
-            block = take(address)
 
-    return callback(loop)
+@kernel
+def backward(number: Any, job: Any, block: int, scratch: Array) -> None:
+    """One block of a job."""
+    values, choices = history_of(number, block, job)
+    backward_block(
+        job.lanes, block * job.lanes,
+        maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
+        scratch, values, choices, maps_of(number, job.dq, 4, job), maps_of(number, job.dv, 1, job),
+        maps_of(number, job.dreward, job.channels, job), maps_of(number, job.dbarrier, 4, job),
+        weights_of(number, job.dweights, block, job),
+    )  # fmt: skip
 
 
 @kernel
@@ -122,3 +115,6 @@ def twelve(
         g = g3[j]
         d0, d1, d2 = d0 + g * x, d1 + g * y, d2 + g * z
     return (a0, a1, a2), (b0, b1, b2), (c0, c1, c2), (d0, d1, d2)
+
+
+BACKWARD = Loop(backward, BACKWARD_JOB, room)

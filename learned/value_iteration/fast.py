@@ -4,17 +4,16 @@ The term of the reward is computed once, an iteration is one pass over blocks of
 which action gave each value is kept for the way back.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import torch
 from torch import Tensor
 from torch.autograd.function import once_differentiable
 
-from fogbench.learned.kernels.lanes import LANES, NUMBERS
-from fogbench.learned.kernels.native import run
-from fogbench.learned.value_iteration.backward import backward
-from fogbench.learned.value_iteration.forward import forward
+from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.native import Loop
+from fogbench.learned.value_iteration.backward import BACKWARD
+from fogbench.learned.value_iteration.forward import FORWARD
 from fogbench.learned.value_iteration.planes import plane_size
 
 
@@ -45,7 +44,7 @@ class _Fast(torch.autograd.Function):
         dreward, dbarrier = torch.empty_like(reward), None if barrier is None else torch.empty_like(barrier)
         parts = weights.new_empty(len(values), *weights.shape)
         down = dq.contiguous(), dv.contiguous()
-        _run(backward, ctx.lanes, ctx.iterations, reward, weights, values, choices, *down, dreward, dbarrier, parts)
+        _run(BACKWARD, ctx.lanes, ctx.iterations, reward, weights, values, choices, *down, dreward, dbarrier, parts)
         return None, dreward, torch.from_numpy(parts.numpy().sum(0)), dbarrier
 
 
@@ -53,14 +52,13 @@ def _forward(lanes: int, iterations: int, reward: Tensor, *others: Tensor | None
     """Q and V by the weights, the barrier and room for the history."""
     batch, _, height, width = reward.shape
     q, v = reward.new_empty(batch, 4, height, width), reward.new_empty(batch, height, width)
-    _run(forward, lanes, iterations, reward, *others, q, v)
+    _run(FORWARD, lanes, iterations, reward, *others, q, v)
     return q, v
 
 
-def _run(loop: Callable[[Any], int], lanes: int, iterations: int, reward: Tensor, *others: Tensor | None) -> None:
+def _run(loop: Loop, lanes: int, iterations: int, reward: Tensor, *others: Tensor | None) -> None:
     """Run a loop on a job, of which these are the arrays in its order."""
-    addresses = [0 if x is None else x.data_ptr() for x in (reward, *others)]
-    run(loop(NUMBERS[reward.dtype]), -(-len(reward) // lanes), lanes, *reward.shape, iterations, *addresses)
+    loop.run(reward.dtype, -(-len(reward) // lanes), (lanes, *reward.shape, iterations), (reward, *others))
 
 
 def _lanes(reward: Tensor) -> int:

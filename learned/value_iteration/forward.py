@@ -1,40 +1,35 @@
 """Value iteration over blocks of samples; the words are those of the file `planes`."""
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numba import carray  # type: ignore[attr-defined]  # it does
 
-from fogbench.learned.kernels.native import take
-from fogbench.learned.value_iteration.job import FORWARD, history_of, maps_of, weights_of
+from fogbench.learned.kernels.native import Loop
+from fogbench.learned.value_iteration.job import FORWARD_JOB, history_of, maps_of, weights_of
 from fogbench.learned.value_iteration.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
-from fogbench.worlds.kernel import callback, fused, kernel
+from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
 
-@lru_cache
-def forward(number: type[np.floating[Any]]) -> int:
-    """The address of the loop of value iteration for a type of numbers."""
+@kernel
+def room(number: Any, job: Any) -> tuple[Array, Array]:
+    """Seven planes, and two of choices."""
+    size = plane_size(job.lanes, job.height, job.width)
+    return planes(7, size, number), np.empty((2, size), np.uint8)
 
-    def loop(address: Any) -> None:
-        job = carray(address, 1, FORWARD)[0]
-        size = plane_size(job.lanes, job.height, job.width)
-        scratch, choices = planes(7, size, number), np.empty((2, size), np.uint8)
-        values = scratch[5:]  # two that take turns, if none is to be kept
-        block = take(address)
-        while block < job.blocks:
-            if job.values:
-                values, choices = history_of(number, block, job)
-            forward_block(
-                job.lanes, job.iterations, block * job.lanes,
-                maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
-                maps_of(number, job.barrier, 4, job), scratch, values, choices,
-                maps_of(number, job.q, 4, job), maps_of(number, job.v, 1, job),
-            )  # fmt: skip
-            block = take(address)
 
-    return callback(loop)
+@kernel
+def forward(number: Any, job: Any, block: int, scratch: Array, choices: Array) -> None:
+    """One block of a job."""
+    values = scratch[5:]  # two that take turns, if none is to be kept
+    if job.values:
+        values, choices = history_of(number, block, job)
+    forward_block(
+        job.lanes, job.iterations, block * job.lanes,
+        maps_of(number, job.reward, job.channels, job), weights_of(number, job.weights, 0, job),
+        maps_of(number, job.barrier, 4, job), scratch, values, choices,
+        maps_of(number, job.q, 4, job), maps_of(number, job.v, 1, job),
+    )  # fmt: skip
 
 
 @kernel
@@ -116,3 +111,6 @@ def correlate(terms: Array, weights: Array, plane: Array, row: int, lanes: int) 
         t1[j] += dot(w1, x)
         t2[j] += dot(w2, x)
         t3[j] += dot(w3, x)
+
+
+FORWARD = Loop(forward, FORWARD_JOB, room)

@@ -23,8 +23,8 @@ from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 
 SIZES = ("lanes", "batch", "channels", "height", "width", "iterations")
-FORWARD = job(*SIZES, "reward", "weights", "barrier", "values", "choices", "q", "v")
-BACKWARD = job(*SIZES, "reward", "weights", "values", "choices", "dq", "dv", "dreward", "dbarrier", "dweights")
+FORWARD_JOB = job(*SIZES, "reward", "weights", "barrier", "values", "choices", "q", "v")
+BACKWARD_JOB = job(*SIZES, "reward", "weights", "values", "choices", "dq", "dv", "dreward", "dbarrier", "dweights")
 
 
 @kernel

@@ -1,0 +1,116 @@
+"""The instructions on lanes: kernels take them from the rows of arrays, compare them and put them back.
+
+The arrays of such a kernel are [any, at least 16]; row i, or its first sixteen numbers, is one `Lanes`.
+"""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+from fogbench.learned.kernels import operators  # noqa: F401  whoever has lanes can add them
+from fogbench.learned.kernels.lanes import LANES, Lanes, spread
+
+
+def instruction(compose: Callable[..., Any]) -> Callable[..., Any]:
+    """What kernels can call, of a function of Numba types that returns a signature and how its code is built."""
+    return cast(Callable[..., Any], intrinsic(compose))
+
+
+def _address(context: Any, builder: Any, rows: Any, array: Any, kind: Any, index: Any) -> Any:
+    """Where row `index` begins, as a pointer to a vector."""
+    fields = context.make_array(rows)(context, builder, array)
+    pitch = builder.extract_value(fields.strides, 0)
+    offset = builder.mul(pitch, context.cast(builder, index, kind, types.intp))
+    vector = context.get_value_type(Lanes(rows.dtype))
+    start = builder.bitcast(fields.data, ir.IntType(8).as_pointer())
+    return builder.bitcast(builder.gep(start, [offset]), vector.as_pointer())
+
+
+@instruction
+def at(_: Any, rows: Any, index: Any) -> Any:
+    """Row `index`."""
+
+    def build(context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        pointer = _address(context, builder, rows, values[0], index, values[1])
+        return builder.load(pointer, align=rows.dtype.bitwidth // 8)
+
+    return Lanes(rows.dtype)(rows, index), build
+
+
+@instruction
+def put(_: Any, rows: Any, index: Any, _lanes: Any) -> Any:
+    """Make lanes the row `index`."""
+
+    def build(context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        pointer = _address(context, builder, rows, values[0], index, values[1])
+        builder.store(values[2], pointer, align=rows.dtype.bitwidth // 8)
+        return context.get_dummy_value()
+
+    return types.void(rows, index, Lanes(rows.dtype)), build
+
+
+@instruction
+def full(_: Any, rows: Any, number: Any) -> Any:
+    """A number in all lanes, of the type of `rows`."""
+    lanes = Lanes(rows.dtype)
+
+    def build(context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        return spread(context, builder, values[1], number, lanes)
+
+    return lanes(rows, number), build
+
+
+@instruction
+def until(_: Any, x: Any, limit: Any, within: Any, beyond: Any) -> Any:
+    """In each lane `within` where x <= limit, else `beyond`."""
+    lanes = next(kind for kind in (x, limit, within, beyond) if isinstance(kind, Lanes))
+
+    def build(context: Any, builder: Any, kinds: Any, values: Any) -> Any:
+        x, limit, within, beyond = (
+            spread(context, builder, value, kind, lanes) for value, kind in zip(values, kinds.args, strict=True)
+        )
+        return builder.select(builder.fcmp_ordered("<=", x, limit), within, beyond)
+
+    return lanes(x, limit, within, beyond), build
+
+
+@instruction
+def root(_: Any, x: Any) -> Any:
+    """The square root."""
+    return x(x), _named("sqrt")
+
+
+@instruction
+def whole(_: Any, x: Any) -> Any:
+    """The largest integer that is not larger."""
+    return x(x), _named("floor")
+
+
+@instruction
+def halved(_: Any, times: Any) -> Any:
+    """2^-times for whole numbers, by the bits of the result."""
+    bits, fraction = times.number.bitwidth, {32: 23, 64: 52}[times.number.bitwidth]
+    integers = ir.VectorType(ir.IntType(bits), LANES)
+
+    def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        bias, shift = (ir.Constant(integers, [n] * LANES) for n in ((1 << bits - fraction - 2) - 1, fraction))
+        exponent = builder.sub(bias, builder.fptosi(values[0], integers))
+        return builder.bitcast(builder.shl(exponent, shift), values[0].type)
+
+    return times(times), build
+
+
+def _named(name: str) -> Callable[..., Any]:
+    """Calls LLVM's function of that name."""
+
+    def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        (x,) = values
+        number = {"float": "f32", "double": "f64"}[str(x.type.element)]
+        kind = ir.FunctionType(x.type, [x.type])
+        full_name = f"llvm.{name}.v{LANES}{number}"
+        return builder.call(builder.module.globals.get(full_name) or ir.Function(builder.module, kind, full_name), [x])
+
+    return build
