@@ -56,5 +56,5 @@ def test_an_episode_of_other_sources_is_told(played: Scenario, tmp_path: Path) -
         replay_recorded(played, None, "astar", 2, tmp_path / "store", tmp_path / "x.png")
     assert str(caught.value) == (
         "--episode: got 2; expected one of the 2 that are recorded of astar in short. 1 recorded episodes of astar in "
-        "short do not count any more: its settings or sources have changed; `fogbench run` plays them again."
+        "short do not count any more: its settings, sources or packages have changed; `fogbench run` plays them again."
     )
