@@ -67,7 +67,7 @@ def run(
 @app.command()
 def check(scenarios: Paths = None) -> None:
     """Read scenario files, report every mistake with its place, and say what a run would play."""
-    from fogbench.bench.session import check_all
+    from fogbench.bench.check import check_all
 
     check_all(_scenarios(scenarios))
 
@@ -122,7 +122,7 @@ def replay(
     Drawn are the truth, what the agent had seen by then, its current view, and its path.
     """
     from fogbench.bench.playback import replay_recorded
-    from fogbench.bench.session import read_all
+    from fogbench.bench.several import read_all
 
     (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
     typer.echo(replay_recorded(chosen, variant, agent, episode, results / chosen.name, out))
@@ -146,7 +146,7 @@ def look(
     which the agent first sees the end wall, turns back, and is out.
     """
     from fogbench.bench.look import look_inside
-    from fogbench.bench.session import read_all
+    from fogbench.bench.several import read_all
 
     (chosen,) = read_all(_scenarios([scenario])[:1], sys.maxsize)
     typer.echo(look_inside(chosen, variant, agent, episode, results / chosen.name))

@@ -13,6 +13,7 @@ from rich.progress import track
 from threadpoolctl import threadpool_limits
 
 from fogbench.bench.playing.loop import episode_stream, episode_world
+from fogbench.bench.playing.provenance import differences
 from fogbench.bench.playing.replay import Moment, retrace
 from fogbench.bench.playing.selection import chosen_row, chosen_rows, chosen_variant
 from fogbench.bench.reading.scenario import Scenario, Variant
@@ -43,7 +44,7 @@ def look_inside(scenario: Scenario, variant_name: str | None, agent: str, episod
     Its decisions are taken again, one by one, and held against the record.
 
     Returns:
-        What was found, for each figure.
+        What was found, for each figure, and how the packages differ from those that it was played with, if they do.
 
     Raises:
         Mistake: there is no such network or episode, or it decides otherwise than recorded.
@@ -54,10 +55,11 @@ def look_inside(scenario: Scenario, variant_name: str | None, agent: str, episod
     rows = chosen_rows(scenario, variant, agent, folder).head(EPISODES)
     end = "-".join(re.findall(r"\w+", f"{variant.name} {agent}")) + ".png"
     with threadpool_limits(1):  # as it was played
-        return "\n".join([
+        figures = (
             _memory(variant, entry, row, folder / f"memory-{end}"),
             _spaces(variant, entry, rows, folder / f"tsne-{end}"),
-        ])  # fmt: skip
+        )
+    return "\n".join(filter(None, [*figures, differences(folder, scenario)]))
 
 
 def _network(variant: Variant, label: str) -> Entry:

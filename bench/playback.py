@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fogbench.bench.drawing import film, known, strip, truth
+from fogbench.bench.playing.provenance import differences
 from fogbench.bench.playing.replay import End, Moment, retrace, verify
 from fogbench.bench.playing.selection import chosen_row, chosen_variant
 from fogbench.bench.reading.scenario import Scenario
@@ -26,7 +27,7 @@ def replay_recorded(
     """Replay one recorded episode, verify it, and draw it into `out` (`.png` or `.gif`).
 
     Returns:
-        What was seen, in two lines.
+        What was seen, in two lines, and how the packages differ from those that it was played with, if they do.
 
     Raises:
         Mistake: there is no such episode, it does not replay as recorded, or `out` cannot be drawn.
@@ -44,7 +45,8 @@ def replay_recorded(
     else:
         film(drawn, out)
     checked = "It ends as recorded" if row["steps"] else "Nothing was recorded to verify"
-    return f"{told} {Outcome[row['outcome']].value} {row['detail']}\n{checked}. Drawn in {out}"
+    lines = f"{told} {Outcome[row['outcome']].value} {row['detail']}", f"{checked}. Drawn in {out}"
+    return "\n".join(filter(None, [*lines, differences(folder, scenario)]))
 
 
 def _kind(out: Path) -> str:

@@ -1,62 +1,84 @@
-"""Keys of episodes: equal keys, equal episodes. A changed setting, seed, map file or source changes them."""
+"""Keys of episodes: equal keys, equal episodes. A changed setting, seed, map file, source or package changes them.
 
-import sys
-from functools import cache
-from hashlib import sha256
-from pathlib import Path
+Of the sources only those count that the classes which play lead to by their imports: see
+`fogbench.bench.playing.closure`.
+"""
 
-from fogbench import planners, worlds
-from fogbench.bench.reading.scenario import Variant
+from collections.abc import Iterable, Mapping
+from itertools import chain
+from typing import Any
+
+from fogbench.bench.playing.closure import closure
+from fogbench.bench.playing.packages import installed
+from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.variant import Entry
+from fogbench.planners import judge_of, reference_of
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
 
-DECIDE = ("loop.py",)
-"""Files of the harness that decide what an episode is."""
+LOOP = "fogbench.bench.playing.loop"
+"""What says what an episode is."""
+
+Versions = Mapping[str, str]
+"""Of packages, by the name that import statements have for them."""
 
 
-def world_key(variant: Variant) -> str:
-    """The key of all that an episode of a variant depends on, without its agent: 64 hexadecimal digits."""
-    return digest(
-        variant.seed,
-        variant.family.words(),
-        variant.conditions.model_dump_json(),
-        _sources(type(variant.family).__module__),
-        _folder(Path(worlds.__file__).parent),
-        *(_file(Path(__file__).with_name(name)) for name in DECIDE),
-    )
+def world_key(variant: Variant, versions: Versions | None = None) -> str:
+    """The key of all that an episode of a variant depends on, without its agent: 64 hexadecimal digits.
+
+    Args:
+        variant: of a scenario.
+        versions: of the packages; None: those that are installed here.
+    """
+    words = variant.seed, variant.family.words(), variant.conditions.model_dump_json()
+    return digest(*words, _used(_of_world(variant), versions))
 
 
-def agent_key(entry: Entry) -> str:
-    """The key of an agent: its class, its settings, its sources and those of the planners; not its label.
+def agent_key(entry: Entry, versions: Versions | None = None) -> str:
+    """The key of an agent: its settings and all that they use; not its label.
+
+    Args:
+        entry: of a variant.
+        versions: as for `world_key`.
 
     Raises:
         TypeError: an agent without settings, which was skipped.
     """
+    return digest(_settings(entry).words(), _used(_of_agent(entry), versions))
+
+
+def packages(scenario: Scenario) -> list[str]:
+    """The packages whose versions are in the keys of a scenario, in the order of their names."""
+    agents = (_of_agent(entry) for variant in scenario.variants for entry in variant.agents if not entry.skipped)
+    return sorted(closure(*chain(*map(_of_world, scenario.variants), *agents)).packages)
+
+
+def _of_world(variant: Variant) -> tuple[type | str, ...]:
+    """What makes an episode, without its agent."""
+    return type(variant.family), type(variant.conditions), *_measures(variant), LOOP
+
+
+def _measures(variant: Variant) -> tuple[type | str, ...]:
+    """The judge and the reference of a kind of world."""
+    judge, reference = judge_of(variant.kind), reference_of(variant.kind)
+    return *((judge,) if judge else ()), *((reference.settings,) if reference else ())
+
+
+def _of_agent(entry: Entry) -> tuple[type | str, ...]:
+    """The class of an agent's settings, and whatever it says that it uses besides, as `module` or `module:class`."""
+    settings: Any = _settings(entry)
+    uses = getattr(settings, "uses", None)  # which may be a setting of a user's
+    return type(settings), *(uses() if callable(uses) else ())
+
+
+def _settings(entry: Entry) -> Settings:
     if not isinstance(entry.settings, Settings):
         raise TypeError(f"{entry.label} has no settings: {entry.skipped}")
-    classes = [cls for cls in type(entry.settings).__mro__ if issubclass(cls, Settings) and cls is not Settings]
-    return digest(
-        entry.settings.words(),
-        *dict.fromkeys(_sources(cls.__module__) for cls in classes),
-        _folder(Path(planners.__file__).parent),
-    )
+    return entry.settings
 
 
-def _sources(module: str) -> str:
-    """The digest of the whole package that a module is in, or of the file of a module that is in none."""
-    top = sys.modules[module.partition(".")[0]]
-    if hasattr(top, "__path__"):
-        return digest(*(_folder(Path(folder)) for folder in top.__path__))
-    return _file(Path(str(top.__file__)))
-
-
-@cache
-def _folder(folder: Path) -> str:
-    files = sorted(folder.rglob("*.py"))
-    return digest(*(part for file in files for part in (file.relative_to(folder).as_posix(), _file(file))))
-
-
-@cache
-def _file(file: Path) -> str:
-    return sha256(file.read_bytes()).hexdigest()
+def _used(starts: Iterable[type | str], versions: Versions | None) -> str:
+    """The digest of all that is used."""
+    contents, names = closure(*starts)
+    found = installed(names) if versions is None else versions
+    return digest(*chain(*sorted(contents)), *(f"{name} {found.get(name, '')}" for name in sorted(names)))

@@ -6,15 +6,16 @@ import platform
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, Field
 
+from fogbench.bench.playing.keys import packages
+from fogbench.bench.playing.packages import difference, installed
 from fogbench.bench.playing.store import StoreError, put
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
@@ -32,7 +33,7 @@ PACKAGES = (
     "ompl",
     "torch",
 )
-"""Packages whose versions are written down, where they are installed."""
+"""Packages whose versions are always written down, where they are installed; with those that are in the keys."""
 
 
 class _Session(BaseModel):
@@ -71,6 +72,27 @@ def read_run(folder: Path) -> dict[str, Any]:
         raise StoreError(f"{path}: got a broken file; expected what an earlier run has written.") from None
 
 
+def versions_of(folder: Path) -> dict[str, str] | None:
+    """The versions of packages in the last session of a folder; None where nothing was run there.
+
+    Raises:
+        StoreError: `run.json` is broken.
+    """
+    if not (folder / "run.json").exists():
+        return None
+    return dict(read_run(folder)["sessions"][-1]["versions"])
+
+
+def differences(folder: Path, scenario: Scenario) -> str:
+    """Which packages the last session had in other versions than there are here, in one line; empty if none.
+
+    Raises:
+        StoreError: `run.json` is broken.
+    """
+    versions = versions_of(folder)
+    return "" if versions is None else difference(packages(scenario), versions)
+
+
 @contextmanager
 def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
     """Write into `run.json` what is run, on what and when; `ended` stays empty where a run was killed.
@@ -80,7 +102,7 @@ def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
     """
     path = folder / "run.json"
     earlier = read_run(folder)["sessions"] if path.exists() else []
-    session = {"started": _now(), "ended": None, "workers": workers, **circumstances()}
+    session = {"started": _now(), "ended": None, "workers": workers, **circumstances(packages(scenario))}
     run = {
         "scenario": scenario.name,
         "path": str(scenario.path),
@@ -104,26 +126,16 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def circumstances() -> dict[str, Any]:
-    """The command, the commit, the machine and the versions."""
+def circumstances(others: Iterable[str] = ()) -> dict[str, Any]:
+    """The command, the commit, the machine and the versions; those of `others` besides `PACKAGES`."""
     return {
         "command": shlex.join(["fogbench", *sys.argv[1:]]),
         "commit": _commit(),
         "cpu": _cpu(),
         "cores": os.cpu_count(),
         "system": platform.platform(),
-        "versions": {"python": platform.python_version(), **_versions()},
+        "versions": {"python": platform.python_version(), **installed([*PACKAGES, *others])},
     }
-
-
-def _versions() -> dict[str, str]:
-    found = {}
-    for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
 
 
 def _cpu() -> str:

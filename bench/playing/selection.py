@@ -6,6 +6,7 @@ from typing import Any
 import pandas as pd
 
 from fogbench.bench.playing import store
+from fogbench.bench.playing.provenance import versions_of
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.worlds.mistake import Mistake, unknown
 
@@ -28,8 +29,8 @@ def chosen_variant(scenario: Scenario, name: str | None) -> Variant:
 
 
 def chosen_rows(scenario: Scenario, variant: Variant, agent: str, folder: Path) -> pd.DataFrame:
-    """All that is recorded of an agent in a variant, with the columns `READS`."""
-    rows = store.read(folder, scenario, READS)
+    """All that is recorded of an agent in a variant, with the columns `READS`, by the versions of the last session."""
+    rows = store.read(folder, scenario, READS, versions_of(folder))
     return rows[(rows["variant"] == variant.name) & (rows["agent"] == agent)]
 
 
@@ -46,7 +47,7 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
     labels = [entry.label for entry in variant.agents if not entry.skipped]
     if agent not in labels:
         raise unknown("--agent", agent, labels)
-    count = store.stale(folder, scenario).get((variant.name, agent))
+    count = store.stale(folder, scenario, versions_of(folder)).get((variant.name, agent))
     lacking = (
         f"--episode: got {episode}; expected one of the {len(rows)} that are recorded of {agent} in {variant.name}."
         if len(rows)

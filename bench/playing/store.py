@@ -1,7 +1,8 @@
 """The store of a scenario: `run.json` and `episodes/*.parquet` in one folder.
 
 `pandas.read_parquet("results/grid/episodes")` reads it anywhere. Here only the rows count whose keys are those of the
-scenario as it is now: what was played under other settings stays on the disk and enters nothing.
+scenario as it is now, under the versions of packages that one asks for: what was played under other settings stays on
+the disk and enters nothing.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from fogbench.bench.playing.episode import LATER, SCHEMA, Episode, table
-from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.playing.keys import Versions, agent_key, world_key
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds import files
 from fogbench.worlds.mistake import Mistake
@@ -30,8 +31,8 @@ LISTS = {kind: pd.ArrowDtype(kind) for kind in SCHEMA.types if pa.types.is_list(
 """Lists stay as they are stored: an object for each would take twice the memory."""
 
 STALE = (
-    "{count} recorded episodes of {agent} in {variant} do not count any more: its settings or sources have changed; "
-    "`fogbench run` plays them again."
+    "{count} recorded episodes of {agent} in {variant} do not count any more: its settings, sources or packages have "
+    "changed; `fogbench run` plays them again."
 )
 """What a user is told of `stale` episodes."""
 
@@ -46,13 +47,19 @@ class StoreError(Mistake):
     """A store that cannot be read or written; its text is one line `file: got ...; expected ...`."""
 
 
-def read(folder: Path, scenario: Scenario, columns: Sequence[str]) -> pd.DataFrame:
+def read(folder: Path, scenario: Scenario, columns: Sequence[str], versions: Versions | None = None) -> pd.DataFrame:
     """The recorded episodes of a scenario as it is now, in its order: one row per variant, agent and episode.
+
+    Args:
+        folder: of the store.
+        scenario: what was played.
+        columns: of the rows.
+        versions: of packages; None: those that are installed here.
 
     Raises:
         StoreError: a file is broken.
     """
-    return _read(folder, _current(scenario), columns)
+    return _read(folder, _current(scenario, versions), columns)
 
 
 def _read(folder: Path, current: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
@@ -85,14 +92,15 @@ def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]
     return _episodes(read(folder, scenario, WHO))
 
 
-def stale(folder: Path, scenario: Scenario) -> dict[tuple[str, str], int]:
+def stale(folder: Path, scenario: Scenario, versions: Versions | None = None) -> dict[tuple[str, str], int]:
     """How many episodes of each variant and agent are recorded under other keys alone; pairs without any are left out.
 
     Raises:
         StoreError: a file is broken.
     """
-    current = recorded(folder, scenario)
-    ever = _episodes(_read(folder, _current(scenario).drop(columns=["agent_key", "world_key"]), WHO))
+    keys = _current(scenario, versions)
+    current = _episodes(_read(folder, keys, WHO))
+    ever = _episodes(_read(folder, keys.drop(columns=["agent_key", "world_key"]), WHO))
     counts = {pair: len(episodes - current.get(pair, set())) for pair, episodes in ever.items()}
     return {pair: count for pair, count in counts.items() if count}
 
@@ -101,10 +109,10 @@ def _episodes(rows: pd.DataFrame) -> dict[tuple[str, str], set[int]]:
     return {(str(v), str(a)): set(group) for (v, a), group in rows.groupby(WHO[:2], sort=False)["episode"]}
 
 
-def _current(scenario: Scenario) -> pd.DataFrame:
+def _current(scenario: Scenario, versions: Versions | None) -> pd.DataFrame:
     """The keys of each variant and agent that runs, its place in the scenario, and how many episodes are wanted."""
     rows = [
-        (variant.name, entry.label, agent_key(entry), world_key(variant), variant.episodes)
+        (variant.name, entry.label, agent_key(entry, versions), world_key(variant, versions), variant.episodes)
         for variant in scenario.variants
         for entry in variant.agents
         if not entry.skipped

@@ -1,14 +1,12 @@
 """Keys of episodes change with everything that an episode depends on, and with nothing else."""
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from fogbench.bench.playing.keys import agent_key, world_key
+from fogbench.bench.playing import closure, sources
+from fogbench.bench.playing.keys import agent_key, packages, world_key
+from fogbench.bench.playing.packages import installed
 from fogbench.bench.reading.scenario import Variant, read_scenario
 from fogbench.planners.astar import AStar
 
@@ -103,9 +101,9 @@ def test_an_agents_settings_are_in_its_key_and_its_label_and_place_are_not() -> 
 
 
 def test_a_plug_in_counts_by_its_source_and_not_by_its_path(tmp_path: Path) -> None:
-    """Two copies have the same key; a changed line, even a comment, is another agent."""
+    """Copies have the same key, with more comments too; a changed line is another agent."""
     found = []
-    for name, source in (("a", PLUGIN), ("b", PLUGIN), ("c", PLUGIN + "# more\n")):
+    for name, source in (("a", PLUGIN), ("b", PLUGIN + "# more\n"), ("c", PLUGIN + "MORE = 1\n")):
         (tmp_path / name).mkdir()
         (tmp_path / name / f"{name}.py").write_text(source)
         agents = variant("[astar]", f"[./{name}.py:Mine]", tmp_path / name / "keys.yaml").agents
@@ -113,43 +111,77 @@ def test_a_plug_in_counts_by_its_source_and_not_by_its_path(tmp_path: Path) -> N
     assert found[0] == found[1] != found[2]
 
 
-def test_a_users_map_family_counts_by_its_source(tmp_path: Path) -> None:
-    """Its settings alone do not say what it draws."""
+def test_a_module_that_a_plug_in_imports_is_in_its_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a function too: a changed line of it is another agent, a comment is not."""
+    monkeypatch.syspath_prepend(tmp_path)
+    inner = PLUGIN + "    def start(self, task, rng):\n        import keys_shelf\n"
+    (tmp_path / "mine.py").write_text(inner)
     found = []
-    for name, source in (("a", FAMILY), ("b", FAMILY), ("c", FAMILY + "# more\n")):
-        (tmp_path / f"{name}.py").write_text(source)
-        found.append(world_key(variant("blobs", f"./{name}.py:Sparse", tmp_path / "keys.yaml")))
+    for source in ("STEP = 1\n", "STEP = 1  # more\n", "STEP = 2\n"):
+        (tmp_path / "keys_shelf.py").write_text(source)
+        forget()
+        (agent,) = variant("[astar]", "[./mine.py:Mine]", tmp_path / "keys.yaml").agents
+        found.append(agent_key(agent))
     assert found[0] == found[1] != found[2]
 
 
-def test_sources_are_in_the_keys(tmp_path: Path) -> None:
-    """Those of the worlds and of the loop are in the one, those of the planners in the other, no report in any."""
-    for package in ("fogbench.worlds", "fogbench.planners", "fogbench.learned", "fogbench.bench"):
-        shutil.copytree(Path(__import__(package).__path__[0]), tmp_path / package)
+def test_an_installed_package_is_in_a_key_by_its_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By what is installed or, if one says so, by what was; its contents do not count."""
+    shelf = tmp_path / "site-packages"
+    (shelf / "keys_lamp").mkdir(parents=True)
+    monkeypatch.syspath_prepend(shelf)
+    (tmp_path / "mine.py").write_text("import keys_lamp\n" + PLUGIN)
+    found = []
+    for number, source in (("1", ""), ("1", "ON = 1\n"), ("2", "")):
+        (shelf / "keys_lamp" / "__init__.py").write_text(source)
+        forget()
+        scenario = read_scenario(TEXT.replace("[astar]", "[./mine.py:Mine]"), tmp_path / "keys.yaml")
+        (agent,) = scenario.variants[0].agents
+        assert "keys_lamp" in packages(scenario)
+        found.append(agent_key(agent, {"numpy": "2", "keys_lamp": number}))
+    assert found[0] == found[1] != found[2]
+    assert agent_key(agent) not in found
 
-    def both() -> list[str]:
-        code = (
-            "from pathlib import Path; from fogbench.bench.playing.keys import *;"
-            "from fogbench.bench.reading.scenario import read_scenario;"
-            f"variant = read_scenario({TEXT!r}, Path('keys.yaml')).variants[0];"
-            "print(world_key(variant), agent_key(variant.agents[0]))"
-        )
-        env = {**os.environ, "PYTHONPATH": str(tmp_path)}
-        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, stdout=subprocess.PIPE, check=True)
-        return done.stdout.decode().split()
 
-    world, agent = both()
-    for file, changed in (
-        ("worlds/maps/cells.py", (True, False)),
-        ("planners/route.py", (False, True)),
-        ("bench/playing/loop.py", (True, False)),
-        ("bench/reporting/report.py", (False, False)),
-    ):
-        text = (tmp_path / file).read_text()
-        (tmp_path / file).write_text(text + "# changed\n")
-        now = both()
-        assert (now[0] != world, now[1] != agent) == changed
-        (tmp_path / file).write_text(text)
+def test_by_default_versions_are_those_of_this_machine() -> None:
+    """Of each package that is used."""
+    page = read_scenario(TEXT, Path("keys.yaml"))
+    (row,) = page.variants
+    (agent,) = row.agents
+    here = installed(packages(page))
+    assert {"numba", "numpy", "pydantic"} <= here.keys()
+    assert (agent_key(agent), world_key(row)) == (agent_key(agent, here), world_key(row, here))
+    older = {**here, "numba": "0.1"}
+    assert agent_key(agent, older) != agent_key(agent, here)
+    assert world_key(row, older) != world_key(row, here)
+
+
+def test_what_settings_say_that_they_use_is_in_the_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the network of a policy, which its settings do not import."""
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "mine.py").write_text(PLUGIN + "    def uses(self):\n        return ['keys_network:Net']\n")
+    found = []
+    for source in ("LAYERS = 1\n", "LAYERS = 2\n"):
+        (tmp_path / "keys_network.py").write_text(source)
+        forget()
+        (agent,) = variant("[astar]", "[./mine.py:Mine]", tmp_path / "keys.yaml").agents
+        found.append(agent_key(agent))
+    assert found[0] != found[1]
+
+
+def forget() -> None:
+    """Have all files looked for and read again."""
+    for kept in (sources.read_source, closure._find, closure._closure):
+        kept.cache_clear()
+
+
+def test_a_users_map_family_counts_by_its_source(tmp_path: Path) -> None:
+    """Its settings alone do not say what it draws."""
+    found = []
+    for name, source in (("a", FAMILY), ("b", FAMILY + "# more\n"), ("c", FAMILY + "MORE = 1\n")):
+        (tmp_path / f"{name}.py").write_text(source)
+        found.append(world_key(variant("blobs", f"./{name}.py:Sparse", tmp_path / "keys.yaml")))
+    assert found[0] == found[1] != found[2]
 
 
 def test_a_skipped_agent_without_settings_has_no_key(tmp_path: Path) -> None:

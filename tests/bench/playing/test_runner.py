@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from fogbench.bench.playing import keys
+from fogbench.bench.playing import closure, sources
 from fogbench.bench.playing.episode import SCHEMA, TIMINGS
 from fogbench.bench.playing.runner import Progress, RunError, run
 from fogbench.bench.playing.store import read
@@ -113,7 +113,8 @@ def test_only_what_changed_runs_again(make: Any, tmp_path: Path) -> None:
     assert played(eager, store) == {("short", "astar"): 4, ("long", "astar"): 4}
     with (tmp_path / "bad.py").open("a") as file:
         file.write("\nNEW = True\n")
-    keys._file.cache_clear()  # a process reads a source once
+    for kept in (sources.read_source, closure._closure):
+        kept.cache_clear()  # a process reads a source once
     assert played(make(agents=plain), store) == {("short", "none"): 4, ("long", "none"): 4}
     assert len(facts(make(agents=plain), store)) == 2 * 3 * 4
     wider = make(agents=plain, variants={"short": {"budget": {"steps": 6}}, "long": {"budget": {"steps": 31}}})

@@ -1,0 +1,66 @@
+"""Several scenario files: read together, then taken one after the other."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+from rich.console import Console
+from rich.text import Text
+
+from fogbench.bench.reading.scenario import Scenario, ScenarioError, read_scenario, text_of
+from fogbench.worlds.mistake import Mistake
+
+Answer = TypeVar("Answer")
+
+
+def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
+    """Read scenario files.
+
+    Args:
+        paths: of the files.
+        episodes: a cell, in place of what the files say; None: what they say.
+
+    Raises:
+        ScenarioError: all the mistakes in all the files, or two files with one name.
+    """
+    scenarios, lines = dict[str, Scenario](), list[str]()
+    for path in paths:
+        try:
+            scenario = read_scenario(text_of(path), path)
+        except ScenarioError as error:
+            lines += error.lines
+            continue
+        twin = scenarios.setdefault(scenario.name, scenario)
+        if twin is not scenario:
+            lines.append(f"{path}: got the name {scenario.name}, as in {twin.path}; expected a name of its own.")
+    if lines:
+        raise ScenarioError(lines)
+    return [_with_episodes(scenario, episodes) if episodes else scenario for scenario in scenarios.values()]
+
+
+def _with_episodes(scenario: Scenario, episodes: int) -> Scenario:
+    return replace(scenario, variants=tuple(replace(each, episodes=episodes) for each in scenario.variants))
+
+
+def each(scenarios: list[Scenario], console: Console, do: Callable[[Scenario], Answer]) -> list[Answer]:
+    """Do the same with each scenario that is not skipped; a mistake in one does not stop the others."""
+    answers, mistakes = [], []
+    for scenario in scenarios:
+        console.rule(Text(scenario.name), align="left")
+        say(scenario.about, console, style="dim")
+        if scenario.skipped:
+            say(f"Skipped: {scenario.skipped}.", console, style="yellow")
+            continue
+        try:
+            answers.append(do(scenario))
+        except Mistake as mistake:
+            mistakes.append(str(mistake))
+    if mistakes:
+        raise Mistake("\n".join(mistakes))
+    return answers
+
+
+def say(text: str, console: Console, style: str | None = None) -> None:
+    """Print a text as it is."""
+    console.print(text, style=style, highlight=False, markup=False)
