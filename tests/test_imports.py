@@ -59,6 +59,13 @@ def test_the_command_line_loads_nothing_heavy(code: str) -> None:
     assert not HEAVY & loaded(code)
 
 
+def test_a_check_loads_no_tables_and_no_plots() -> None:
+    """It draws a world of each variant, for which it needs Numba; agents that search need no torch."""
+    found = loaded(told("check", "goal_distance"))
+    assert {"numba", "fogbench.planners.rrt_star"} <= found
+    assert not {"pandas", "matplotlib", "scipy.stats", "scipy.sparse", "pebble", "sklearn", "torch"} & found
+
+
 def test_tables_load_none_of_their_entries() -> None:
     """Importing the packages with the tables imports no module that the tables name."""
     modules = {target.partition(":")[0] for target in TARGETS.values()}

@@ -65,7 +65,8 @@ def _measures(variant: Variant) -> tuple[type | str, ...]:
 def _of_agent(entry: Entry) -> tuple[type | str, ...]:
     """The class of an agent's settings, and whatever it says that it uses besides, as `module` or `module:class`."""
     settings: Any = _settings(entry)
-    return type(settings), *(settings.uses() if hasattr(settings, "uses") else ())
+    uses = getattr(settings, "uses", None)  # which may be a setting of a user's
+    return type(settings), *(uses() if callable(uses) else ())
 
 
 def _settings(entry: Entry) -> Settings:

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from fogbench.bench.command import main
+from fogbench.bench.playing import packages
 
 Fogbench = Callable[..., tuple[int, str, str]]
 
@@ -85,6 +86,19 @@ def test_a_report_compares_with_whom_one_asks_for(fogbench: Fogbench) -> None:
     code, _, err = fogbench("report", "small.yaml", "--against", "fronteir")
     expected = "expected one of astar, frontier, no memory. Did you mean frontier?"
     assert (code, err) == (2, f"--against, small.yaml: got fronteir; {expected}\n")
+
+
+def test_results_of_another_machine_stay(fogbench: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What differs here is told in one line, by all that read them; only a run would play them again."""
+    write("small", "[astar, memoryless]")
+    fogbench("run", "small.yaml")
+    recorded, told = packages.installed(["numpy"])["numpy"], "Recorded with numpy {}; here is numpy 9.9."
+    version = packages._version
+    monkeypatch.setattr(packages, "_version", lambda name: "9.9" if name == "numpy" else version(name))
+    for arguments in (["report"], ["report", "--against", "astar"], ["replay", "--agent", "astar"]):
+        code, out, err = fogbench(*arguments, "small.yaml")
+        assert (code, told.format(recorded) in out, "do not count any more" in out, err) == (0, True, False, "")
+    assert Path("results/small/summary.csv").read_text().count("success,100.0,") == 2
 
 
 def test_a_crash_is_told_and_stays_in_the_exit_code(fogbench: Fogbench) -> None:

@@ -1,13 +1,17 @@
 """From a recorded row to a picture: what is told, and what is refused."""
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
 from fogbench.bench.playback import replay_recorded
+from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.playing.loop import lost, play
+from fogbench.bench.playing.provenance import noted, read_run
 from fogbench.bench.playing.store import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
@@ -48,6 +52,22 @@ def test_a_place_that_cannot_be_drawn_into_is_refused_first(name: str, played: S
         replay_recorded(played, None, "nobody", 0, tmp_path / "store", out)
     wanted = "name that ends in .png or .gif" if name == "x.jpg" else "file in a folder that can be written"
     assert str(caught.value) == f"--out: got {out}; expected a {wanted}."
+
+
+def test_an_episode_of_another_machine_is_replayed(make: Make, tmp_path: Path) -> None:
+    """It stays current under the versions that `run.json` tells; the last line says which differ."""
+    scenario, store = make(), tmp_path / "store"
+    variant = scenario.variants[0]
+    with recording(store) as recorder, noted(store, scenario, 1):
+        run = read_run(store)
+        there = run["sessions"][0]["versions"]
+        there["numpy"] = "1"
+        keys = {"agent_key": agent_key(variant.agents[0], there), "world_key": world_key(variant, there)}
+        recorder.append(replace(play(scenario, variant, variant.agents[0], 0, 1), **keys))
+    (store / "run.json").write_text(json.dumps(run))
+    told = replay_recorded(scenario, None, "astar", 0, store, tmp_path / "x.png").splitlines()
+    assert told[1].startswith("It ends as recorded")
+    assert told[2:] == [f"Recorded with numpy 1; here is numpy {version('numpy')}."]
 
 
 def test_an_episode_of_other_sources_is_told(played: Scenario, tmp_path: Path) -> None:

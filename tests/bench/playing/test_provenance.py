@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from fogbench.bench.playing.provenance import noted, read_run
+from fogbench.bench.playing.keys import packages
+from fogbench.bench.playing.provenance import differences, noted, read_run, versions_of
 from fogbench.bench.playing.store import StoreError
 from fogbench.worlds.mistake import Mistake
 
@@ -60,3 +61,32 @@ def test_a_broken_file_is_named_and_kept(make: Any, tmp_path: Path, text: str) -
         read_run(tmp_path)
     assert str(caught.value) == told
     assert path.read_text() == text
+
+
+def test_a_session_has_the_versions_of_all_packages_that_its_keys_name(make: Any, tmp_path: Path) -> None:
+    """Besides those that are always noted, of which the keys may name none."""
+    shelf = 'from fogbench.planners.astar import AStar\n\n\nclass Mine(AStar):\n    """Yes."""\n'
+    (tmp_path / "mine.py").write_text(f"import yaml\n{shelf}")
+    scenario = make(agents=["./mine.py:Mine"], reference="Mine")
+    assert versions_of(tmp_path) is None
+    with noted(tmp_path, scenario, 1):
+        pass
+    found = versions_of(tmp_path)
+    assert found is not None
+    assert {"numpy", "numba", "pydantic", "yaml"} <= set(packages(scenario)) <= found.keys()
+    assert (found["pandas"], found["yaml"]) == (version("pandas"), f"{version('PyYAML')} (PyYAML)")
+
+
+def test_versions_are_those_of_the_last_session(make: Any, tmp_path: Path) -> None:
+    """Where they differ from those here it is told, and where nothing was run nothing is."""
+    scenario = make()
+    assert differences(tmp_path, scenario) == ""
+    for _ in range(2):
+        with noted(tmp_path, scenario, 1):
+            pass
+    assert differences(tmp_path, scenario) == ""
+    for session, told in ((0, ""), (1, f"Recorded with numpy 1; here is numpy {version('numpy')}.")):
+        run = read_run(tmp_path)
+        run["sessions"][session]["versions"]["numpy"] = "1"
+        (tmp_path / "run.json").write_text(json.dumps(run))
+        assert differences(tmp_path, scenario) == told

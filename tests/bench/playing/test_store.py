@@ -101,6 +101,17 @@ def test_stale_episodes_are_counted(make: Any, tmp_path: Path) -> None:
     assert stale(store, scenario) == {}
 
 
+def test_rows_are_current_by_the_versions_that_one_asks_for(make: Any, tmp_path: Path) -> None:
+    """Those of the machine where they were played, in place of those here."""
+    scenario, store, there = make(), tmp_path / "store", {"numpy": "1", "numba": "0.1"}
+    variant = scenario.variants[0]
+    keys = {"agent_key": agent_key(variant.agents[0], there), "world_key": world_key(variant, there)}
+    write(store, row(scenario, 0, **keys), row(scenario, 1))
+    assert read(store, scenario, ["episode"], there)["episode"].tolist() == [0]
+    assert read(store, scenario, ["episode"])["episode"].tolist() == [1]
+    assert stale(store, scenario, there) == stale(store, scenario) == {("short", "astar"): 1}
+
+
 def test_a_stray_file_is_in_nobodys_way(make: Any, tmp_path: Path) -> None:
     """Parts are numbered past it; reading it gives the one line of any file with other columns."""
     scenario, store = make(), tmp_path / "store"
