@@ -22,7 +22,7 @@ from fogbench.bench.reading.scenario import read_scenario
 from fogbench.learned import LEARNED
 from fogbench.planners import PLANNERS, SPEEDS
 from fogbench.worlds import KINDS
-from fogbench.worlds.kernel import kept
+from fogbench.worlds.kernel import used
 
 PROJECT = "fogbench"
 
@@ -135,7 +135,7 @@ def _both_ways(part: Any, inputs: Any) -> str:
 
 
 def _place_of_kernels() -> str:
-    folder = kept(resolve_name("fogbench.planners.astar:search"))  # any kernel
+    folder = used()
     return f"compiled, kept in {folder}" if folder else "compiled by each process for itself: no place can be written"
 
 

@@ -112,9 +112,12 @@ def opened(block: Value) -> Value:
     return block if block.content is not None else replace(block, content={})
 
 
-def blocks_of(page: Value, folder: Path) -> tuple[str, ...]:
-    """The blocks that the kind of a page reads; mistakes are told when the page itself is read."""
+def blocks_of(page: Value, folder: Path) -> tuple[str, ...] | None:
+    """The blocks that the kind of a page reads; None where its package is missing, and nobody knows them.
+
+    Mistakes are told when the page itself is read.
+    """
     finder = Finder(folder)
     family = finder.family_class(page)
     _, conditions = finder.kind_class(page, family[0] if family else None)
-    return blocks(conditions) if conditions else ()
+    return None if finder.skipped else blocks(conditions)

@@ -11,7 +11,7 @@ ALONE = "all"
 
 
 def pages(
-    page: Value, faults: list[Fault], varied: Sequence[str], blocks_of: Callable[[Value], Sequence[str]]
+    page: Value, faults: list[Fault], varied: Sequence[str], blocks_of: Callable[[Value], Sequence[str] | None]
 ) -> dict[str, Value]:
     """The whole page of each variant, by its name.
 
@@ -19,20 +19,22 @@ def pages(
         page: of the file.
         faults: what is wrong with the variants is added to them.
         varied: keys that may differ, beside the blocks of the kinds of world in the file.
-        blocks_of: the blocks that the kind of a whole page reads.
+        blocks_of: the blocks that the kind of a whole page reads; None where nobody knows them.
     """
     variants = page.fields().get("variants")
     overlays = variants.fields() if variants else {}
     own = {name: blocks_of(_lay(page, overlay)) for name, overlay in overlays.items()}
-    blocks = list(dict.fromkeys(block for each in own.values() for block in each))
+    blocks = list(dict.fromkeys(block for each in own.values() for block in each or ()))
     place = varied.index("kind") + 1
     known = [*varied[:place], *blocks, *varied[place:]]
-    for overlay in overlays.values():
-        unknown = overlay.fields().keys() - set(known)
+    laid = {}
+    for name, overlay in overlays.items():
+        read = own[name]
+        unknown = set() if read is None else overlay.fields().keys() - set(known)
         faults.extend(overlay.wrong_key(key, one_of(known), near(key, known)) for key in unknown)
-    fitting = {name: _without(page, set(blocks) - set(own[name])) for name in overlays}
-    said = {name: _without(overlay, overlay.fields().keys() - set(known)) for name, overlay in overlays.items()}
-    return {name: _lay(fitting[name], said[name]) for name in overlays} or {ALONE: page}
+        fitting = page if read is None else _without(page, set(blocks) - set(read))
+        laid[name] = _lay(fitting, _without(overlay, unknown))
+    return laid or {ALONE: page}
 
 
 def _without(mapping: Value, keys: Iterable[str]) -> Value:

@@ -10,10 +10,9 @@ from rich.console import Console
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.metrics import METRICS
 from fogbench.bench.reporting.pairs import COMPARISONS, pair
-from fogbench.bench.reporting.sections import comparisons, failures, headline, page, skipped
+from fogbench.bench.reporting.sections import headline, page, sections
 from fogbench.bench.reporting.statistics import holm
 from fogbench.bench.reporting.tables import print_table
-from fogbench.bench.reporting.trainings import trainings
 from fogbench.worlds.types import Outcome
 
 READS = (
@@ -76,16 +75,10 @@ def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, c
         scenario: what was measured.
         console: where to.
     """
+    print_table("Results", headline(table, scenario, short=True), console)
     broken = frame[frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name])]
-    for title, lines in (
-        ("Results", headline(table, scenario, short=True)),
-        ("Trainings", trainings(frame, table, scenario)),
-        ("Paired", comparisons(table, scenario)),
-        ("Skipped", skipped(scenario)),
-        ("Crashed or hung", failures(broken)),
-    ):
-        if lines.rows:
-            print_table(title, lines, console)
+    for section in sections(frame, table, scenario, broken):
+        print_table(section.name, section.lines, console)
 
 
 def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...]]:

@@ -84,7 +84,7 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
     ]
     for module in needy:
         monkeypatch.delitem(sys.modules, module)
-    monkeypatch.setattr("fogbench.bench.doctor.kept", lambda _: None)
+    monkeypatch.setattr("fogbench.bench.doctor.used", lambda: None)
     examine()
     told = rows(capsys.readouterr().out)
     assert ["fog-lamp", "missing: pip install .", "everything"] in told

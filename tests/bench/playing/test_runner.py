@@ -10,7 +10,8 @@ import pytest
 
 from fogbench.bench.playing import closure, sources
 from fogbench.bench.playing.episode import SCHEMA, TIMINGS
-from fogbench.bench.playing.runner import Progress, RunError, run
+from fogbench.bench.playing.local import RunError
+from fogbench.bench.playing.runner import Progress, run
 from fogbench.bench.playing.store import read
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Outcome

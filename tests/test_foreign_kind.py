@@ -1,0 +1,259 @@
+"""A kind of world from a package of its own: it is checked, run, judged, reported, replayed and listed like any other.
+
+The package is `tests/plugin/ring_kind`: rings of numbered stations. Nothing of the harness knows it.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+import fogbench
+from fogbench.worlds.tables import registered
+
+SOURCE = Path(__file__).parent / "plugin" / "ring_kind"
+
+POINTS = """
+[fogbench.kinds]
+ring = ring_kind:RING
+[fogbench.references]
+ring = ring_kind:REFERENCE
+[fogbench.judges]
+ring = ring_kind.judge:RingJudge
+[fogbench.families]
+stations = ring_kind.stations:Stations
+[fogbench.planners]
+walker = ring_kind.walker:Walker
+"""
+
+MIXED = """\
+name: mixed
+about: Rings and grids.
+budget: {steps: {per_distance: 3, plus: 6}}
+variants:
+  ring: {maps: {stations: {size: 9, cut: 0.5}}, track: {slip: 0.2}}
+  grid: {maps: {blobs: {size: 8, obstacles: [0, 4], obstacle_size: [1, 2]}}, sensor: {radius: 2}, reference: astar}
+  walls: {kind: ring, maps: {blobs: {size: 4, obstacles: [0, 3], obstacle_size: [1, 1]}}}
+agents: [walker, astar]
+episodes: 6
+"""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder where the package is installed, with its entry points."""
+    place = tmp_path_factory.mktemp("site")
+    shutil.copytree(SOURCE, place / "ring_kind", ignore=shutil.ignore_patterns("__pycache__"))
+    info = place / "ring_kind-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: ring-kind\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(POINTS)
+    return place
+
+
+@pytest.fixture
+def ring(site: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """The package, imported here."""
+    monkeypatch.syspath_prepend(site)
+    registered.cache_clear()
+    import ring_kind  # noqa: PLC0415  it is on the path only now
+
+    yield ring_kind
+    for name in [name for name in sys.modules if name.partition(".")[0] == "ring_kind"]:
+        monkeypatch.delitem(sys.modules, name)
+    registered.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def command(site: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., tuple[int, str]]:
+    """Runs fogbench in a folder with the scenario, and the package on the path."""
+    folder = tmp_path_factory.mktemp("here")
+    (folder / "mixed.yaml").write_text(MIXED)
+    place = os.pathsep.join([str(site), str(Path(fogbench.__file__).parents[1])])
+
+    def command(*words: str, **texts: str) -> tuple[int, str]:
+        for name, text in texts.items():
+            (folder / f"{name}.yaml").write_text(text)
+        environment = {**os.environ, "PYTHONPATH": place, "COLUMNS": "200"}
+        line = [sys.executable, "-m", "fogbench", *words]
+        done = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    command.folder = folder  # type: ignore[attr-defined]
+    return command
+
+
+@pytest.fixture(scope="module")
+def played(command: Any) -> pd.DataFrame:
+    """The rows of a run of the scenario."""
+    code, text = command("run", "mixed.yaml")
+    assert code == 0, text
+    rows: pd.DataFrame = pd.read_parquet(command.folder / "results" / "mixed" / "episodes")
+    return rows
+
+
+def test_a_scenario_that_mixes_kinds_is_checked(command: Any) -> None:
+    """Each variant has the blocks of its kind, and says who cannot play there."""
+    code, text = command("check", "mixed.yaml")
+    assert code == 0, text
+    assert text.count("6 episodes of 1 agents") == 3
+    assert "astar is skipped: it plays grid worlds, not ring" in text
+    assert "walker is skipped: it plays ring worlds, not grid" in text
+
+
+def test_episodes_are_referenced_and_judged(played: pd.DataFrame) -> None:
+    """The walker is its own reference, is never wrong, and knows at each step how far the goal still is."""
+    rings = played[played["agent"] == "walker"]
+    assert set(rings["kind"]) == {"ring"}
+    assert (rings["outcome"] == "REACHED").any()
+    reached = rings[rings["outcome"] == "REACHED"]
+    assert (reached["reference_length"] == reached["length"]).all()
+    assert rings["judged"].sum() > 30
+    assert (rings["wrong_decisions"] + rings["strict_wrong"]).sum() == 0
+    for row in rings.to_dict("records"):
+        assert len(row["remaining"]) == len(row["decision_seconds"])
+        assert row["remaining"][0] == row["shortest"]
+
+
+def test_covariates_are_those_of_the_kind(played: pd.DataFrame) -> None:
+    """Rings have stations, grids have a density; the others' columns are empty."""
+    rings, grids = (played[played["kind"] == kind] for kind in ("ring", "grid"))
+    assert set(rings["stations"]) == {9.0, 16.0}
+    assert rings["density"].isna().all()
+    assert grids["stations"].isna().all()
+    assert grids["density"].notna().all()
+
+
+def test_a_map_of_cells_serves_another_kind(played: pd.DataFrame) -> None:
+    """Blobs make rings of 16 stations, since the kind says so."""
+    walls = played[played["variant"] == "walls"]
+    assert (set(walls["kind"]), set(walls["stations"])) == ({"ring"}, {16.0})
+
+
+@pytest.mark.usefixtures("played")
+def test_nothing_is_played_twice(command: Any) -> None:
+    """A second run finds all its episodes."""
+    code, text = command("run", "mixed.yaml")
+    assert code == 0
+    assert "18 episodes were recorded before, 0 were played now." in text
+
+
+@pytest.mark.usefixtures("played")
+def test_a_report_speaks_of_the_kind(command: Any) -> None:
+    """Its reference has its own name."""
+    code, text = command("report", "mixed.yaml")
+    assert code == 0, text
+    page = (command.folder / "results" / "mixed" / "summary.md").read_text()
+    assert "ratio to the shorter way or A*" in page
+
+
+@pytest.mark.usefixtures("played")
+@pytest.mark.parametrize("suffix", ["png", "gif"])
+@pytest.mark.parametrize(("variant", "agent"), [("ring", "walker"), ("walls", "walker"), ("grid", "astar")])
+def test_episodes_replay_and_are_drawn(variant: str, agent: str, suffix: str, command: Any) -> None:
+    """Recorded numbers lead to the recorded end, and its layers become a picture."""
+    out = f"{variant}.{suffix}"
+    code, text = command("replay", "mixed.yaml", "--agent", agent, "--variant", variant, "--episode", "1", "--out", out)
+    assert code == 0, text
+    assert "It ends as recorded." in text
+    with Image.open(command.folder / out) as image:
+        assert len(np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)) > 4
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("track", "trak", "variants.ring: got trak; expected one of maps, kind, track, tasks, budget, sensor, rules"),
+        ("track: {slip: 0.2}", "sensor: {radius: 1}", "variants.ring: got sensor; expected one of"),
+        ("kind: ring", "kind: rink", "variants.walls.kind: got rink; expected one of grid, ring. Did you mean ring?"),
+        ("sensor: {radius", "kind: ring, sensor: {radius", "variants.grid: got sensor; expected one of"),
+        (
+            "{maps: {stations: {size: 9, cut: 0.5}}, track: {slip: 0.2}}",
+            "{kind: grid, maps: {stations: {size: 9}}}",
+            "variants.ring.kind: got grid; expected a kind that these maps can be: ring.",
+        ),
+    ],
+)
+def test_a_mistake_names_the_blocks_of_the_kind(old: str, new: str, expected: str, command: Any) -> None:
+    """One line at its place, with the nearest valid name."""
+    assert old in MIXED
+    code, text = command("check", "wrong.yaml", wrong=MIXED.replace(old, new, 1))
+    assert code == 2
+    assert expected in text
+    assert "Traceback" not in text
+
+
+def test_the_schema_and_the_list_have_it(command: Any) -> None:
+    """Its block, its name, its family and its agent."""
+    code, text = command("schema")
+    schema = json.loads(text)
+    assert code == 0
+    assert schema["properties"]["kind"]["anyOf"][0]["enum"] == ["grid", "ring"]
+    assert {"track", "sensor"} <= schema["properties"].keys()
+    _, text = command("list")
+    assert "ring_kind.stations:Stations" in text
+    assert "ring_kind.walker:Walker" in text
+
+
+def test_a_kind_that_lacks_a_package_is_skipped(command: Any, site: Path) -> None:
+    """Its variants say which, the others are played; a scenario of nothing else is skipped as a whole."""
+    world = site / "ring_kind" / "world.py"
+    text = world.read_text()
+    world.write_text("import fog_lamp\n" + text)
+    try:
+        code, told = command("check", "mixed.yaml")
+        assert code == 0, told
+        assert "ring is skipped: " in told
+        assert "needs the package fog_lamp, which is not installed" in told
+        assert "grid: 6 episodes of 1 agents" in told
+    finally:
+        world.write_text(text)
+
+
+def test_what_was_never_seen_changes_nothing(ring: Any) -> None:
+    """Two rings that differ only in links that the walker has not looked at get the same actions."""
+    from ring_kind.conditions import RingConditions  # noqa: PLC0415  it is on the path only now
+    from ring_kind.stations import Stations  # noqa: PLC0415
+    from ring_kind.walker import Walker  # noqa: PLC0415
+
+    del ring
+    conditions, changed = RingConditions(budget={"steps": 20}), 0
+    for seed in range(20):
+        world = Stations(size=11, cut=0.7).sample(np.random.default_rng(seed), 0, conditions)
+        places, actions = walk(world, Walker())
+        links = world.links.copy()
+        unseen = set(range(11)) - {place - back for place in places for back in (0, 1)} - {10 if 0 in places else -1}
+        for link in unseen:
+            links[link] = fogbench.FREE + fogbench.BLOCKED - links[link]
+        other = conditions.ring(links, world.start, world.task.goal)
+        if other is None:  # what was changed has closed the ring
+            other = type(world)(links, world.start, world.task, world.slip)
+        changed += len(unseen)
+        assert walk(other, Walker()) == (places, actions)
+    assert changed > 50
+
+
+def walk(world: Any, settings: Any) -> tuple[list[int], list[Any]]:
+    """The stations and the actions of an episode."""
+    agent, state, luck = settings.start(world.task, np.random.default_rng(0)), world.reset(), np.random.default_rng(1)
+    places, actions = [], []
+    for _ in range(world.task.budget.steps):
+        observation = world.sense(state, luck)
+        places.append(observation.place)
+        actions.append(agent.act(observation))
+        if actions[-1] is None:
+            break
+        step = world.step(state, actions[-1], luck)
+        if step.reached:
+            break
+        state = step.state
+    return places, actions
