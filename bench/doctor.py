@@ -21,7 +21,7 @@ from fogbench.bench.reading.scenario import read_scenario
 from fogbench.learned import LEARNED
 from fogbench.planners import PLANNERS
 from fogbench.planners.astar import search
-from fogbench.worlds.kernel import kept
+from fogbench.worlds.kernel import used
 
 PROJECT = "fogbench"
 
@@ -146,7 +146,7 @@ def _both_ways(part: Any, inputs: Any) -> str:
 
 
 def _place_of_kernels() -> str:
-    folder = kept(search)
+    folder = used()
     return f"compiled, kept in {folder}" if folder else "compiled by each process for itself: no place can be written"
 
 

@@ -84,7 +84,7 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
     ]
     for module in needy:
         monkeypatch.delitem(sys.modules, module)
-    monkeypatch.setattr("fogbench.bench.doctor.kept", lambda _: None)
+    monkeypatch.setattr("fogbench.bench.doctor.used", lambda: None)
     examine()
     told = rows(capsys.readouterr().out)
     assert ["fog-lamp", "missing: pip install .", "everything"] in told
@@ -122,5 +122,5 @@ def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
     assert {
         "fogbench.planners.incremental",
         "fogbench.planners.segment",
-        "fogbench.learned.value_iteration.forward",
+        "fogbench.learned.kernels.native",
     } <= set(found["read from"])
