@@ -152,7 +152,7 @@ def _identity(thing: object) -> str:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Whole or not at all, whoever else writes it."""
+    """Write a file whole or not at all, whoever else writes it."""
     content = sha256(content).digest() + content
     draft = path.with_name(f"{path.name}.{uuid4().hex}")
     if not path.parent.exists():
