@@ -7,7 +7,7 @@ from pkgutil import resolve_name
 import pytest
 
 import fogbench
-from fogbench.bench.playing.loop import play
+from fogbench.bench.playing.play import play
 from fogbench.bench.reading.scenario import Scenario, read_scenario
 from fogbench.worlds.types import Outcome
 

@@ -13,7 +13,7 @@ import pytest
 import fogbench
 from fogbench import learned, planners
 from fogbench.learned import LEARNED
-from fogbench.planners import PLANNERS
+from fogbench.planners import JUDGES, PLANNERS
 from fogbench.worlds import FAMILIES, KINDS
 
 HEAVY = {"torch", "ompl", "mujoco", "numba", "matplotlib", "sklearn"}
@@ -28,7 +28,7 @@ FACE = {
 }
 """The names of the face, and the modules that they come from."""
 
-TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **KINDS}
+TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **{name: kind.conditions for name, kind in KINDS.items()}, **JUDGES}
 
 
 def loaded(code: str) -> set[str]:

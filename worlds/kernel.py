@@ -5,10 +5,11 @@ would go unnoticed; it raises where nothing can be written; and two processes th
 So each compiled form has a file of its own here, in a folder named after all the sources that kernels can come from.
 Who makes such a folder removes those beside it that nobody has used for a month; any that is missed is compiled anew.
 Of a user's kernel only its own file counts: what it calls in other files of the user is not watched.
+
+How Numba is brought to do this stands in `numba_doors`, and why its version has a ceiling.
 """
 
 import os
-import pickle
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -17,16 +18,13 @@ from hashlib import sha256
 from inspect import getfile
 from pathlib import Path
 from time import time
-from typing import Any, TypeVar, cast
+from typing import Any, ClassVar, TypeVar, cast
 from uuid import uuid4
 
 import numba
 import numpy as np
-from numba import types
-from numba.core.ccallback import CFunc
-from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
 
+from fogbench.worlds import numba_doors
 from fogbench.worlds.streams import digest
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -59,22 +57,20 @@ def summing(function: F) -> F:
 
 def callback(loop: Callable[[Any], None]) -> int:
     """The address of a loop of one pointer, compiled for callers outside of Python; the code stays."""
-    compiled: Any = CFunc(loop, ((types.voidptr,), types.void), {}, {})
-    compiled._cache = _Forms(loop, {})  # noqa: SLF001  Numba has no other door
-    compiled.compile()
+    compiled = numba_doors.callback(loop, _Forms(loop, {}))
     _CALLBACKS.append(compiled)
     return int(compiled.address)
 
 
-def kept(compiled: Callable[..., Any]) -> Path | None:
-    """The folder that a kernel was last read from or written to; None while that has not happened."""
-    return cast(Path | None, cast(Any, compiled).stats.cache_path)
+def used() -> Path | None:
+    """The folder that this process last read compiled kernels from or wrote them to; None while it has done neither."""
+    return _Forms.used
 
 
 def _compile(function: F, **options: Any) -> F:
     compiled = numba.njit(nogil=True, **options)(function)
     with suppress(OSError):  # what was typed at a prompt has no file, and is not kept
-        compiled._cache = _Forms(function, options)  # noqa: SLF001  Numba has no other door
+        numba_doors.attach(compiled, _Forms(function, options))
     return cast(F, compiled)
 
 
@@ -97,12 +93,12 @@ def _folders() -> Iterator[Path]:
 
 FOLDERS = tuple(_folders())
 
-_dumps: Any = dumps
-_rebuild: Any = CompileResult._rebuild  # noqa: SLF001  as Numba's own cache does it
-
 
 class _Forms:
     """What Numba asks for the compiled forms of one kernel. Trouble with the disk only costs the time to compile."""
+
+    used: ClassVar[Path | None] = None
+    """The folder that the forms of any kernel were last read from or written to."""
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
         """Keep the forms of `function` under some options.
@@ -126,8 +122,8 @@ class _Forms:
                 content = self._file(folder, signature, context.codegen()).read_bytes()
                 if sha256(content[DIGEST:]).digest() != content[:DIGEST]:
                     continue  # broken machine code would take the process down
-                form = _rebuild(context, *pickle.loads(content[DIGEST:]))  # noqa: S301  written by `save_overload`
-                self.cache_path = folder
+                form = numba_doors.unpacked(content[DIGEST:], context)
+                self.cache_path = _Forms.used = folder
                 with suppress(OSError):  # not ours
                     os.utime(folder)
                 return form
@@ -135,28 +131,28 @@ class _Forms:
 
     def save_overload(self, signature: object, form: Any) -> None:
         """Write the form of a signature into the first folder that takes it, if one does."""
-        if form.library.has_dynamic_globals or not self.fixed:  # it holds what belongs to this process
+        if not (numba_doors.is_portable(form) and self.fixed):  # it holds what belongs to this process
             return
         for folder in FOLDERS:
             with suppress(Exception):  # forbidden, full, or another Numba than was thought of
-                _write(self._file(folder, signature, form.codegen), _dumps(form._reduce()))  # noqa: SLF001
-                self.cache_path = folder
+                _write(self._file(folder, signature, form.codegen), numba_doors.packed(form))
+                self.cache_path = _Forms.used = folder
                 return
 
     def _file(self, folder: Path, signature: object, codegen: Any) -> Path:
-        return folder / f"{self.name}-{digest(self.source, signature, codegen.magic_tuple())[:16]}.nbc"
+        return folder / f"{self.name}-{digest(self.source, signature, numba_doors.processor(codegen))[:16]}.nbc"
 
 
 def _identity(thing: object) -> str:
     """What a loop holds, in words that are the same in all processes; none for what belongs to this one."""
-    forms = getattr(thing, "_cache", None)
+    forms = numba_doors.store_of(thing)
     if isinstance(forms, _Forms):
         return forms.source if forms.fixed else ""
     return repr(thing) if isinstance(thing, type | np.dtype) else ""
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Whole or not at all, whoever else writes it."""
+    """Write a file whole or not at all, whoever else writes it."""
     content = sha256(content).digest() + content
     draft = path.with_name(f"{path.name}.{uuid4().hex}")
     if not path.parent.exists():

@@ -10,7 +10,7 @@ from fogbench.worlds.types import Array
 
 @kernel
 def activate(sizes: Sizes, interface: Array, write_heads: Array, read_heads: Array) -> None:
-    """The controls in an interface: strengths by softplus, gates and erase vectors by sigmoid, modes by softmax."""
+    """Heads get their controls: strengths by softplus, gates and erase vectors by sigmoid, modes by softmax."""
     word, _, readers, writers, _ = sizes
     lay(interface[:, : len(write_heads)], write_heads)
     lay(interface[:, len(write_heads) :], read_heads)

@@ -1,4 +1,4 @@
-"""Which rows are used, and the write weightings, which prefer those that are not; forward and back."""
+"""The usage of the rows, and the write weightings, which prefer rows that are not used; forward and back."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Addressing by content, forward and back."""
+"""Weightings by content: which rows are like a key, forward and back."""
 
 from typing import Any
 

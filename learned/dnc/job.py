@@ -1,4 +1,4 @@
-"""What the loops of the memory access are told, and a block of the arrays that this stands for.
+"""The jobs of the memory access, and a block of the arrays that their addresses stand for.
 
 A block is sixteen samples side by side. An array of a block is flat and has one row for each number of a sample; the
 letters are those of `fogbench.learned.dnc.access`.

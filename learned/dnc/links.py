@@ -1,7 +1,7 @@
-"""The temporal links of a memory access, forward and back: which row was written after which, and reading along them.
+"""The temporal links of a memory access: which row was written after which, and what is read along them; both ways.
 
 The links are far larger than all else. So the way back passes over them once: it links a row again, follows it, and
-leaves its gradient, all while that row is at hand; two rows at a time, which share what they load.
+leaves its gradient, all while that row is at hand. It takes two rows at a time, which share what they load.
 
 Words used here
     ahead, back   [R * N], the links, and the transposed links, times a vector of rows for each read head

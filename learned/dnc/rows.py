@@ -1,4 +1,4 @@
-"""Writing to the rows of the memory and reading from them, forward and back."""
+"""Heads write to the rows of the memory and read from them, forward and back."""
 
 import numpy as np
 
@@ -53,17 +53,17 @@ def write_back(
 
 @fused
 def read(sizes: Sizes, memory: Array, weights: Array, reads: Array) -> None:
-    """The rows, weighted."""
+    """Each read head reads the sum of the rows, times its weights."""
     word, rows, readers, _, _ = sizes
-    found = np.empty((1, LANES), memory.dtype)
+    sums = np.empty((1, LANES), memory.dtype)
     for j in range(readers):
         for d in range(word):
             total = full(memory, 0)
             for n in range(rows):
                 total += at(weights, j * rows + n) * at(memory, d * rows + n)
-            put(found, 0, total)
+            put(sums, 0, total)
             for lane in range(len(reads)):
-                reads[lane, j * word + d] = found[0, lane]
+                reads[lane, j * word + d] = sums[0, lane]
 
 
 @fused

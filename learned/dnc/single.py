@@ -85,18 +85,18 @@ def whole_step(number: Any, job: Any, _block: int) -> None:
     inputs, h = job.inputs, job.hidden
     read, size = job.word * job.reads, job.interface_size
     gates, tanhs, interface = np.empty(4 * h, number), np.empty(h, number), np.empty((1, size), number)
-    told, known = np.empty(inputs + read + h, number), np.empty(h + read, number)
-    told[:inputs] = vector(number, job.x, inputs)
-    told[inputs : inputs + read] = vector(number, job.last_reads, read)
-    told[inputs + read :] = vector(number, job.h, h)
-    apply(matrix(number, job.gate_weight, 4 * h, len(told)), vector(number, job.gate_bias, 4 * h), told, gates)
+    first, final = np.empty(inputs + read + h, number), np.empty(h + read, number)
+    first[:inputs] = vector(number, job.x, inputs)
+    first[inputs : inputs + read] = vector(number, job.last_reads, read)
+    first[inputs + read :] = vector(number, job.h, h)
+    apply(matrix(number, job.gate_weight, 4 * h, len(first)), vector(number, job.gate_bias, 4 * h), first, gates)
     squash_sample(
         gates.reshape(-1, LANES), rows(number, job.c, h, 0), rows(number, job.new_h, h, 0),
         rows(number, job.new_c, h, 0), tanhs.reshape(-1, LANES),
     )  # fmt: skip
-    known[:h] = vector(number, job.new_h, h)
+    final[:h] = vector(number, job.new_h, h)
     apply(
-        matrix(number, job.interface_weight, size, h), vector(number, job.interface_bias, size), known[:h],
+        matrix(number, job.interface_weight, size, h), vector(number, job.interface_bias, size), final[:h],
         interface[0],
     )  # fmt: skip
     reads = vector(number, job.new_reads, read)
@@ -105,9 +105,9 @@ def whole_step(number: Any, job: Any, _block: int) -> None:
         state_of(number, job.new, job.new_links, job, 0), reads.reshape(1, read),
         taped(job, np.empty((job.new_lengths_end, LANES), number)),
     )  # fmt: skip
-    known[h:] = reads
+    final[h:] = reads
     y = vector(number, job.y, job.outputs)
-    apply(matrix(number, job.output_weight, len(y), len(known)), vector(number, job.output_bias, len(y)), known, y)
+    apply(matrix(number, job.output_weight, len(y), len(final)), vector(number, job.output_bias, len(y)), final, y)
     within(vector(number, job.new_c, h), job.clip)
     within(y, job.clip)
 

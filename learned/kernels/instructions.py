@@ -15,12 +15,12 @@ from fogbench.learned.kernels.lanes import LANES, Lanes, spread
 
 
 def instruction(compose: Callable[..., Any]) -> Callable[..., Any]:
-    """What kernels can call, of a function of Numba types that returns a signature and how its code is built."""
+    """An instruction that kernels can call, of a function from Numba types to a signature and a builder."""
     return cast(Callable[..., Any], intrinsic(compose))
 
 
 def _address(context: Any, builder: Any, rows: Any, array: Any, kind: Any, index: Any) -> Any:
-    """Where row `index` begins, as a pointer to a vector."""
+    """A pointer to the vector that row `index` begins with."""
     fields = context.make_array(rows)(context, builder, array)
     pitch = builder.extract_value(fields.strides, 0)
     offset = builder.mul(pitch, context.cast(builder, index, kind, types.intp))
@@ -104,7 +104,7 @@ def halved(_: Any, times: Any) -> Any:
 
 
 def _named(name: str) -> Callable[..., Any]:
-    """Calls LLVM's function of that name."""
+    """A builder of calls to LLVM's function of that name."""
 
     def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
         (x,) = values

@@ -13,14 +13,14 @@ from fogbench.worlds.types import Array
 
 @kernel
 def clear(rows: Array) -> None:
-    """Make all zero."""
+    """All rows become zero."""
     for n in range(len(rows)):
         put(rows, n, full(rows, 0))
 
 
 @kernel
 def zeros(rows: Array) -> Array:
-    """As many rows of zeros."""
+    """New rows of zeros, as many as there are rows."""
     new = np.empty((len(rows), LANES), rows.dtype)
     clear(new)
     return new
@@ -28,7 +28,7 @@ def zeros(rows: Array) -> Array:
 
 @kernel
 def same(rows: Array) -> Array:
-    """The same once more."""
+    """A copy of the rows."""
     new = np.empty((len(rows), LANES), rows.dtype)
     for n in range(len(rows)):
         put(new, n, at(rows, n))
@@ -61,7 +61,7 @@ def unlay(rows: Array, samples: Array) -> None:
 
 @fused
 def softmax(scores: Array) -> None:
-    """Make scores a distribution."""
+    """Scores become a distribution."""
     highest = at(scores, 0)
     for n in range(1, len(scores)):
         highest = larger(highest, at(scores, n))
@@ -77,7 +77,7 @@ def softmax(scores: Array) -> None:
 
 @fused
 def softmax_back(shares: Array, d: Array) -> None:
-    """Make gradients by a distribution those by its scores."""
+    """Gradients by a distribution become those by its scores."""
     mean = full(shares, 0)
     for n in range(len(shares)):
         mean += at(shares, n) * at(d, n)

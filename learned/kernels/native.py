@@ -104,7 +104,7 @@ def take(_: Any, pointer: Any) -> Any:
 
 @instruction
 def pointer(_: Any, _address: Any) -> Any:
-    """An integer as a pointer, for `numba.carray`."""
+    """The pointer that an integer is, for `numba.carray`."""
 
     def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
         return builder.inttoptr(values[0], ir.IntType(8).as_pointer())
@@ -114,11 +114,11 @@ def pointer(_: Any, _address: Any) -> Any:
 
 @kernel
 def vector(number: Any, address: int, size: int) -> Array:
-    """[size] there."""
+    """The vector [size] at an address."""
     return carray(pointer(address), (size,), number)
 
 
 @kernel
 def matrix(number: Any, address: int, height: int, width: int) -> Array:
-    """[height, width] there."""
+    """The matrix [height, width] at an address."""
     return carray(pointer(address), (height, width), number)

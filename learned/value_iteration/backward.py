@@ -11,7 +11,7 @@ from fogbench.worlds.types import Array
 
 @kernel
 def room(number: Any, job: Any) -> tuple[Array]:
-    """Nine planes."""
+    """A thread has nine planes."""
     return (planes(9, plane_size(job.lanes, job.height, job.width), number),)
 
 

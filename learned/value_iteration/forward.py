@@ -1,4 +1,4 @@
-"""Value iteration over blocks of samples; the words are those of the file `planes`."""
+"""Value iteration on blocks of samples; the words are those of the file `planes`."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from fogbench.worlds.types import Array
 
 @kernel
 def room(number: Any, job: Any) -> tuple[Array, Array]:
-    """Seven planes, and two of choices."""
+    """A thread has seven planes of numbers, and two of choices."""
     size = plane_size(job.lanes, job.height, job.width)
     return planes(7, size, number), np.empty((2, size), np.uint8)
 

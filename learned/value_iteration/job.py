@@ -1,4 +1,4 @@
-"""What the loops of value iteration are told, and the arrays that this stands for.
+"""The jobs of value iteration, and the arrays that their addresses stand for.
 
     lanes               samples of a block; the last block may have fewer
     batch, channels, height, width, iterations      B, C, H, W and K, at least 1

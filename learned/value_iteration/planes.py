@@ -24,7 +24,7 @@ LINE = 64
 
 @kernel
 def plane_size(lanes: int, height: int, width: int) -> int:
-    """P."""
+    """How many numbers a plane has: P."""
     return (height + 2) * (width + 1) * lanes + 2 * lanes
 
 

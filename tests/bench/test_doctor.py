@@ -122,5 +122,5 @@ def test_afterwards_nothing_is_compiled(tmp_path: Path) -> None:
     assert {
         "fogbench.planners.incremental",
         "fogbench.planners.segment",
-        "fogbench.learned.value_iteration.forward",
+        "fogbench.learned.kernels.native",
     } <= set(found["read from"])

@@ -14,6 +14,7 @@ import pytest
 
 import fogbench
 from fogbench import worlds
+from fogbench.worlds import kernel
 
 WITHOUT_RIGHTS = """
 import ctypes, os, struct
@@ -53,14 +54,14 @@ import json
 import numpy as np
 from fogbench.worlds.maps.cells import __file__, passable
 from fogbench.worlds.maps.sight import hidden, look
-from fogbench.worlds.kernel import kept
+from fogbench.worlds.kernel import used
 
-assert kept(look) is None
+assert used() is None
 view = look(np.eye(3, dtype=np.bool_), 0, 1, 1, True)
 stats = [kernel.stats for kernel in (look, hidden, passable)]
 print(json.dumps({
     "file": __file__,
-    "folder": kept(look) and str(kept(look)),
+    "folder": used() and str(used()),
     "view": view.tolist(),
     "compiled": sum(sum(each.cache_misses.values()) for each in stats),
     "read": sum(sum(each.cache_hits.values()) for each in stats),
@@ -155,6 +156,21 @@ def test_an_edit_of_another_file_is_noticed(folder: Path) -> None:
     after = end(start(folder))
     assert before["folder"] != after["folder"]
     assert after["view"] == [[0, 3, 3], [3, 1, 1], [0, 3, 1]]
+
+
+@pytest.mark.parametrize(
+    "room", ["worlds", "worlds/new", "worlds/maps/families/new", "planners/new", "learned/new/new"]
+)
+def test_a_file_of_any_room_is_a_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: str) -> None:
+    """Whatever folder is added below worlds, planners or learned, its files count; those of `bench` do not."""
+    monkeypatch.setattr(kernel, "HERE", tmp_path / "worlds")
+    found = []
+    for place, text in [("bench", "x = 1"), (room, "x = 1"), (room, "x = 2"), ("bench", "x = 2")]:
+        (tmp_path / place).mkdir(parents=True, exist_ok=True)
+        (tmp_path / place / "constants.py").write_text(text)
+        found.append(kernel._sources())
+    assert found[3] == found[2]
+    assert len(set(found)) == 3
 
 
 def play(folder: Path, name: str, lines: list[str]) -> str:
@@ -286,8 +302,8 @@ def test_use_keeps_kernels(folder: Path) -> None:
 
 def test_kernels_may_be_removed_at_any_moment(folder: Path) -> None:
     """A process that runs compiles anew what it misses, and keeps it."""
-    remove = "\nimport shutil\nfrom fogbench.worlds.maps.cells import fuse\nplace = kept(look)\nshutil.rmtree(place)\n"
-    again = "fuse(np.zeros((3, 3), np.uint8), view, 1, 1)\nassert kept(fuse) == place\nassert place.exists()"
+    remove = "\nimport shutil\nfrom fogbench.worlds.maps.cells import fuse\nplace = used()\nshutil.rmtree(place)\n"
+    again = "fuse(np.zeros((3, 3), np.uint8), view, 1, 1)\nassert used() == place\nassert place.exists()"
     assert told(end(start(folder, SCRIPT + remove + again))) == COLD
 
 

@@ -23,7 +23,8 @@ class RingJudge:
     def targets(self) -> Array:
         """Which ways are right: [2] bool."""
         ways = np.array(ahead(self.known.links, self.place, self.goal))
-        return np.isfinite(ways) & (ways == ways.min())
+        right: Array = np.isfinite(ways) & (ways == ways.min())
+        return right
 
     def judge(self, action: Way) -> Verdict:
         """The verdict on a way; the reference takes the first that is right."""

@@ -1,0 +1,72 @@
+"""The private doors of Numba, all that `kernel` goes through, and what each must do.
+
+Numba hands its compiled code to no cache but its own. So `kernel` uses names that a new version may change without a
+word: then kernels are compiled by each process for itself, or by none. That is why pyproject.toml has a ceiling on the
+version of Numba. Who raises it runs tests/worlds/test_kernel.py, where each of these doors is used.
+"""
+
+import pickle
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from numba import types
+from numba.core.ccallback import CFunc
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+
+class Store(Protocol):
+    """What Numba asks for the compiled forms of a function: before it compiles one, and after."""
+
+    cache_path: Any
+    """Where they are, which Numba repeats in `stats`."""
+
+    def load_overload(self, signature: object, context: Any) -> Any:
+        """The form of a signature, or None."""
+
+    def save_overload(self, signature: object, form: Any) -> None:
+        """Keep the form of a signature."""
+
+
+def attach(compiled: Any, store: Store) -> None:
+    """Let a compiled function ask a store, as `cache=True` lets it ask Numba's own."""
+    compiled._cache = store  # noqa: SLF001  it is set by nobody else
+
+
+def store_of(compiled: object) -> object:
+    """The store that a compiled function asks; None for any other thing."""
+    return getattr(compiled, "_cache", None)
+
+
+def callback(loop: Callable[[Any], None], store: Store) -> Any:
+    """A loop of one pointer, compiled for callers outside of Python; its code stays as long as the result.
+
+    `numba.cfunc` compiles at once, before a store can be attached.
+    """
+    compiled: Any = CFunc(loop, ((types.voidptr,), types.void), {}, {})
+    attach(compiled, store)
+    compiled.compile()
+    return compiled
+
+
+def is_portable(form: Any) -> bool:
+    """Whether a form holds no address of this process."""
+    return not form.library.has_dynamic_globals
+
+
+def packed(form: Any) -> bytes:
+    """A form, with its machine code."""
+    dump: Any = dumps
+    content: bytes = dump(form._reduce())  # noqa: SLF001  as Numba's own cache does it
+    return content
+
+
+def unpacked(content: bytes, context: Any) -> Any:
+    """Undo `packed`; what was not written by it may take the process down."""
+    rebuild: Any = CompileResult._rebuild  # noqa: SLF001  likewise
+    return rebuild(context, *pickle.loads(content))  # noqa: S301  `kernel` has written it
+
+
+def processor(codegen: Any) -> object:
+    """What machine code was made for, in words that are the same in all processes on one machine."""
+    return codegen.magic_tuple()
