@@ -1,4 +1,5 @@
-from .learned.network import Network as Network
+from .learned.grid_policy import GridPolicy as GridPolicy
+from .learned.networks.network import Network as Network
 from .learned.policy import Policy as Policy
 from .planners.astar import search as search
 from .planners.route import Route as Route

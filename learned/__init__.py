@@ -9,3 +9,6 @@ LEARNED = {
 
 EXTRAS = dict.fromkeys(LEARNED, "learned")
 """The extra of the project (`pip install ".[learned]"`) that a policy needs."""
+
+PACKAGES = {"learned": ("safetensors", "torch")}
+"""Packages that an extra brings, and that a policy cannot play without; its settings alone do not import them all."""

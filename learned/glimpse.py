@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import torch
 
+from fogbench.learned.agent import PolicyAgent
 from fogbench.learned.dnc.dnc import DNCState
-from fogbench.learned.memory import LSTMState
-from fogbench.learned.policy import PolicyAgent
+from fogbench.learned.networks.memory import LSTMState
 from fogbench.worlds.types import Array, Move, Observation
 
 

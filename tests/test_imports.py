@@ -10,6 +10,7 @@ import pytest
 
 import fogbench
 from fogbench import learned, planners
+from fogbench.bench.shipped import folder
 from fogbench.learned import LEARNED
 from fogbench.planners import PLANNERS
 from fogbench.worlds import FAMILIES, KINDS
@@ -57,6 +58,19 @@ def test_heavy_packages_would_be_noticed() -> None:
 def test_the_command_line_loads_nothing_heavy(code: str) -> None:
     """Help and lists come at once: no torch, OMPL, MuJoCo, Numba, matplotlib or scikit-learn."""
     assert not HEAVY & loaded(code)
+
+
+def test_reading_a_scenario_loads_no_torch() -> None:
+    """Settings of all networks are read, and their weights held against them, before anything can play."""
+    code = (
+        "from pathlib import Path\n"
+        "from fogbench.bench.reading.scenario import read_scenario, text_of\n"
+        f"place = Path({str(folder() / 'paper' / 'grid.yaml')!r})\n"
+        "agents = read_scenario(text_of(place), place).variants[0].agents\n"
+        "assert {'macn', 'vin'} <= {agent.target.rpartition('.')[2].partition(':')[0] for agent in agents}\n"
+        "assert all(agent.settings for agent in agents)"
+    )
+    assert "torch" not in loaded(code)
 
 
 def test_tables_load_none_of_their_entries() -> None:

@@ -5,12 +5,12 @@ Nothing is imported before a scenario names it.
 
 import sys
 from importlib import import_module
-from importlib.util import module_from_spec, spec_from_file_location
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
 from fogbench.bench.reading.blocks import raised
-from fogbench.bench.reading.tables import EXTRAS, Table
+from fogbench.bench.reading.tables import EXTRAS, PACKAGES, Table
 from fogbench.worlds.mistake import Unavailable, near, one_of
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
@@ -53,6 +53,8 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
         Unavailable: it needs a package that is not installed; the text says which, and how to get it.
     """
     place, _, class_name = target.rpartition(":")
+    if absent := [package for package in PACKAGES.get(EXTRAS.get(name, ""), ()) if not _is_installed(package)]:
+        raise Unavailable(_how_to_get(name, absent[0]))
     module = _import(name, place)
     found = getattr(module, class_name, None)
     if not isinstance(found, type):
@@ -83,6 +85,14 @@ def _import(name: str, place: str) -> ModuleType:
         raise PluginError(f"an existing file (looked for {place})") from None
     except (Exception, SystemExit) as error:  # noqa: BLE001  a user's file may raise anything
         raise PluginError(_importable(error)) from None
+
+
+def _is_installed(package: str) -> bool:
+    """Whether a package can be found; it is not imported."""
+    try:
+        return find_spec(package) is not None
+    except ValueError:  # somebody has put something else in its place
+        return False
 
 
 def _importable(error: BaseException) -> str:

@@ -40,6 +40,9 @@ KIND = Table(KINDS, (), ())
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}
 """The extra of the project that an agent needs."""
 
+PACKAGES = learned.PACKAGES
+"""Packages of an extra that an agent needs even though its settings can be imported without them."""
+
 
 @cache
 def registered(group: str) -> dict[str, str]:

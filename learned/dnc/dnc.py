@@ -11,8 +11,10 @@ from torch import Tensor, nn
 from fogbench.learned.dnc.access import AccessState, Heads, access
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.fast import fast_access
+from fogbench.learned.dnc.shapes import dnc_shapes
 from fogbench.learned.dnc.single import Weights, single_step
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.layers import linear
 
 
 class DNCState(NamedTuple):
@@ -57,10 +59,10 @@ class DNC(nn.Module):
         """
         super().__init__()
         self.heads, self.rows, self.clip, self.fast, self.keep_links_every = heads, rows, clip, fast, keep_links_every
-        read = heads.reads * heads.word
-        self.controller = Controller(inputs + read, hidden)
-        self.interface = nn.Linear(hidden, heads.interface)
-        self.output = nn.Linear(hidden + read, outputs)
+        shapes = dnc_shapes(inputs, outputs, heads, hidden)
+        self.controller = Controller(inputs + heads.reads * heads.word, hidden)
+        self.interface = linear(shapes, "interface")
+        self.output = linear(shapes, "output")
         self.settled: Weights | None = None
 
     def settle(self) -> None:

@@ -17,20 +17,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SIGHT, Frame
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Observation
-
-CHANNELS = 3
-"""Of an image: free, blocked, goal; a cell that is neither free nor blocked is unknown."""
-
-SIGHT = 3
-"""Cells to each side that a controller sees as they are: the paper's 7x7; with a smaller sensor the rest is unknown."""
-
-SEEN = CHANNELS * (2 * SIGHT + 1) ** 2
-"""Numbers of a sight."""
-
-COMPASS = 12
-"""Numbers of a compass: sign, logarithm and clamped size of both offsets to the goal; last move, one of 5; blocked."""
 
 HORIZON = 64
 """Cells; how much farther off a goal lies is not told, so that no number grows with the map beyond all that a network
@@ -77,15 +66,6 @@ class Inputs(NamedTuple):
         """What maps [B, C, H, W] say at the agents' cells: [B, C]."""
         cells = self.cells[:, None, None].expand(-1, maps.shape[1], 1)  # [B, C, 1]
         return maps.flatten(2).gather(2, cells)[..., 0]
-
-
-class Frame(NamedTuple):
-    """Which part of the world an image shows."""
-
-    shape: tuple[int, int]
-    """Rows and columns of the image."""
-    centred: bool
-    """Whether the agent is in its middle (`window`); else it is the whole map, from its first cell on (`map`)."""
 
 
 def gather(

@@ -108,8 +108,9 @@ class Course:
             "threads": torch.get_num_threads(),
             **self.origin,
         }
-        network, weights = type(self.recipe.network).__name__, self.student.network.state_dict()
-        checkpoint.write(self.weights, network, self.recipe.network.trained(), weights, training)
+        settings, state = self.recipe.network, self.student.network.state_dict()
+        weights = {name: tensor.cpu() for name, tensor in state.items()}
+        checkpoint.write(self.weights, type(settings).__name__, settings.trained(), weights, training)
 
     @property
     def weights(self) -> Path:

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from fogbench.learned.encoding.grid import Inputs
-from fogbench.learned.network import Network
+from fogbench.learned.networks.network import Network
 from fogbench.learned.training.rollout import Moment
 from fogbench.worlds.types import Array
 

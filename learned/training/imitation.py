@@ -11,8 +11,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.network import Network
-from fogbench.learned.policy import load
+from fogbench.learned.agent import load
+from fogbench.learned.networks.network import Network
 from fogbench.learned.training.curriculum import eased
 from fogbench.learned.training.exploring import Explorer, Noisy
 from fogbench.learned.training.recipe import Recipe, Training, Worlds
@@ -130,7 +130,7 @@ def rehearse(recipe: Recipe) -> None:
         try:
             listed = family.tasks(worlds.conditions)
             world, _ = draw_world(worlds, family, "training", 0, 0)
-            recipe.network.frame(world.task)
+            recipe.network.shown(world.task)
         except Mistake as error:
             raise Mistake(f"{recipe.name}: {place}: {error}.") from None
         if listed is not None:

@@ -15,9 +15,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import SIGHT, STILL, Known, encode, gather
-from fogbench.learned.network import Network, rows
-from fogbench.learned.policy import Policy
+from fogbench.learned.encoding.grid import STILL, Known, encode, gather
+from fogbench.learned.encoding.grid_sizes import SIGHT
+from fogbench.learned.grid_policy import GridPolicy
+from fogbench.learned.networks.network import Network, rows
 from fogbench.planners.optimal import OptimalMoves, nearer
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.cells import KnownMap
@@ -71,13 +72,13 @@ class Rollout(NamedTuple):
         return self.judged & ~right
 
 
-def roll(settings: Policy, network: Network, episodes: Sequence["Episode"], choose: Chooser) -> Rollout:
+def roll(settings: GridPolicy, network: Network, episodes: Sequence["Episode"], choose: Chooser) -> Rollout:
     """Play episodes to their ends.
 
     Raises:
         Mistake: a network that was made for maps of one size meets another.
     """
-    (frame,) = {settings.frame(episode.world.task) for episode in episodes}
+    (frame,) = {settings.shown(episode.world.task) for episode in episodes}
     live, state = np.arange(len(episodes)), network.blank((len(episodes),))
     decisions: list[tuple[Tensor, Tensor, Tensor]] = []
     while len(live):

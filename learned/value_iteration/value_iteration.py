@@ -16,19 +16,20 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import conv2d
 
+from fogbench.learned.layers import convolution
 from fogbench.learned.value_iteration.fast import fast
-
-ACTIONS = 4
+from fogbench.learned.value_iteration.shapes import ACTIONS, HIDDEN, planner_shapes, reward_shapes
 
 
 class RewardMap(nn.Module):
     """The reward map of an image: 3x3 to `hidden` channels, then 1x1; both are linear, so they run as one 3x3."""
 
-    def __init__(self, channels: int, hidden: int = 150, rewards: int = ACTIONS) -> None:
+    def __init__(self, channels: int, hidden: int = HIDDEN, rewards: int = ACTIONS) -> None:
         """Two convolutions with PyTorch's initial weights."""
         super().__init__()
-        self.features = nn.Conv2d(channels, hidden, 3, padding=1)
-        self.mix = nn.Conv2d(hidden, rewards, 1)
+        shapes = reward_shapes(channels, hidden, rewards)
+        self.features = convolution(shapes, "features")
+        self.mix = convolution(shapes, "mix")
         self.settled: tuple[Tensor, Tensor] | None = None
 
     def forward(self, image: Tensor) -> Tensor:
@@ -64,7 +65,8 @@ class ValueIteration(nn.Module):
         """
         super().__init__()
         self.reward_map = RewardMap(channels)
-        self.kernels = nn.Conv2d(ACTIONS + 1, ACTIONS, 3, bias=False).weight
+        actions, channels, *side = planner_shapes(channels)["kernels"]
+        self.kernels = nn.Conv2d(channels, actions, side, bias=False).weight
         self.iterations = iterations
         self.discount = discount
 

@@ -12,7 +12,7 @@ from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.dnc import DNCState
 from fogbench.learned.glimpse import glimpse, held
 from fogbench.learned.macn import Macn
-from fogbench.learned.memory import LSTMState
+from fogbench.learned.networks.memory import LSTMState
 from fogbench.learned.policy import Policy
 from fogbench.learned.vin import Vin
 

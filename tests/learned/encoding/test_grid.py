@@ -8,7 +8,8 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fogbench.learned.encoding.grid import COMPASS, SIGHT, STILL, Frame, Known, encode
+from fogbench.learned.encoding.grid import STILL, Known, encode
+from fogbench.learned.encoding.grid_sizes import COMPASS, SIGHT, Frame
 from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array
 
 

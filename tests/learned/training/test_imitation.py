@@ -11,9 +11,9 @@ import torch
 
 from fogbench.bench.playing.loop import episode_world
 from fogbench.bench.reading.scenario import read_scenario
+from fogbench.learned.agent import weighted
 from fogbench.learned.encoding.grid import Inputs
 from fogbench.learned.macn import Macn
-from fogbench.learned.policy import weighted
 from fogbench.learned.training.exploring import Explorer, Noisy, pick
 from fogbench.learned.training.imitation import (
     Student,

@@ -10,9 +10,10 @@ import torch
 
 from fogbench.bench.playing import loop
 from fogbench.bench.playing.judge import GridJudge
+from fogbench.learned.agent import PolicyAgent, load, weighted
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.macn import Macn
-from fogbench.learned.policy import Policy, PolicyAgent, load, weighted
+from fogbench.learned.policy import Policy
 from fogbench.learned.training.rollout import Episode, Hindsight, Moment, Rollout, greedy, roll
 from fogbench.learned.vin import Vin
 from fogbench.worlds.grid.world import GridWorld
@@ -180,7 +181,7 @@ def test_a_greedy_batch_decides_as_the_policy_does(
     """
     worlds = worlds_of(conditions, rules)
     network = in_double(load(policy).requires_grad_(requires_grad=False).double())
-    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda _: network)
+    monkeypatch.setattr("fogbench.learned.agent.weighted", lambda _: network)
     rollout = roll(policy, network, [Episode(world, luck(k)) for k, world in enumerate(worlds)], greedy)
     judged = wrong = steps = 0
     for k, world in enumerate(worlds):
