@@ -127,8 +127,8 @@ def _learned() -> dict[str, str]:
         import torch  # noqa: PLC0415  an extra
     except ModuleNotFoundError:
         return {}
-    from fogbench.learned.dnc.access import Heads  # noqa: PLC0415  likewise
     from fogbench.learned.dnc.dnc import DNC  # noqa: PLC0415  it needs the extra
+    from fogbench.learned.dnc.heads import Heads  # noqa: PLC0415  likewise
     from fogbench.learned.value_iteration.value_iteration import ValueIteration  # noqa: PLC0415  likewise
 
     return {

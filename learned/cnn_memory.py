@@ -7,7 +7,10 @@ from typing import ClassVar
 from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
 from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
-from fogbench.learned.shapes import Shapes, convolution, joined
+from fogbench.learned.shapes import Shapes, convolution, parts
+
+SIDE = 3
+"""Of the kernels."""
 
 
 class CnnMemory(Remembering):
@@ -25,9 +28,9 @@ class CnnMemory(Remembering):
 
     def shapes(self) -> Shapes:
         """Those of the convolutions before a memory."""
-        return self.remembering_shapes(self.planned) | joined(convolutions=self._convolutions())
+        return self.remembering_shapes(self.planned) | parts(convolutions=self._convolutions())
 
     def _convolutions(self) -> Shapes:
         """In a row, each before a layer without weights."""
         widths = CHANNELS, *[self.channels] * 3, len(OUTPUTS)
-        return joined(**{str(2 * k): convolution(*ends) for k, ends in enumerate(pairwise(widths))})
+        return parts(**{str(2 * k): convolution(*ends, SIDE) for k, ends in enumerate(pairwise(widths))})

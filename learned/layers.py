@@ -1,17 +1,17 @@
-"""Layers by the shapes of their weights."""
+"""Layers of PyTorch, drawn as PyTorch draws them, of the shapes that their weights are to have."""
 
 from torch import nn
 
-from fogbench.learned.shapes import Shapes
+from fogbench.learned.shapes import Shape
 
 
-def linear(shapes: Shapes, name: str) -> nn.Linear:
-    """The linear map of a name among `shapes`, with weights drawn anew."""
-    outputs, inputs = shapes[f"{name}.weight"]
-    return nn.Linear(inputs, outputs, bias=f"{name}.bias" in shapes)
+def linear(weight: Shape, *, bias: bool = True) -> nn.Linear:
+    """A linear layer of a matrix [outputs, inputs]."""
+    outputs, inputs = weight
+    return nn.Linear(inputs, outputs, bias=bias)
 
 
-def convolution(shapes: Shapes, name: str) -> nn.Conv2d:
-    """The convolution of a name among `shapes`, with weights drawn anew; its maps have the size of the image."""
-    outputs, inputs, side, _ = shapes[f"{name}.weight"]
-    return nn.Conv2d(inputs, outputs, side, padding=side // 2)
+def convolution(weight: Shape, *, bias: bool = True) -> nn.Conv2d:
+    """A convolution of kernels [outputs, channels, side, side], where the side is odd; maps keep their size."""
+    outputs, channels, side, _ = weight
+    return nn.Conv2d(channels, outputs, side, padding=side // 2, bias=bias)

@@ -5,8 +5,9 @@ from typing import ClassVar
 
 from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.memory import Remembering
-from fogbench.learned.shapes import Shapes, joined
-from fogbench.learned.value_iteration.shapes import ACTIONS, planner_shapes
+from fogbench.learned.shapes import Shapes, parts
+from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.value_iteration.sizes import shapes as planner_shapes
 from fogbench.learned.vin import Planning
 
 
@@ -22,4 +23,4 @@ class Macn(Planning, Remembering):
 
     def shapes(self) -> Shapes:
         """Those of a VI module before a memory."""
-        return self.remembering_shapes(self.planned) | joined(planner=planner_shapes(CHANNELS))
+        return self.remembering_shapes(self.planned) | parts(planner=planner_shapes(CHANNELS))

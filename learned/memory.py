@@ -5,12 +5,12 @@ Importing this imports no torch.
 
 from typing import Literal
 
-from fogbench.learned.dnc.heads import Heads
-from fogbench.learned.dnc.shapes import controller_shapes, dnc_shapes
+from fogbench.learned.dnc.heads import Heads, controller_shapes
+from fogbench.learned.dnc.heads import shapes as dnc_shapes
 from fogbench.learned.encoding.grid_sizes import COMPASS, OUTPUTS, SEEN
 from fogbench.learned.grid_policy import GridPolicy
 from fogbench.learned.policy import Size
-from fogbench.learned.shapes import Shapes, joined, linear
+from fogbench.learned.shapes import Shapes, linear, parts
 
 
 class Remembering(GridPolicy):
@@ -45,7 +45,7 @@ class Remembering(GridPolicy):
     def remembering_shapes(self, planned: int) -> Shapes:
         """The shapes of the features' weights, and of the memory's; `planned` numbers come from a planning module."""
         features = linear(planned + SEEN + COMPASS, self.features)
-        return joined(features=features, memory=self._memory_shapes())
+        return parts(features=features, memory=self._memory_shapes())
 
     def _memory_shapes(self) -> Shapes:
         if self.memory == "lstm":
@@ -57,9 +57,9 @@ class Remembering(GridPolicy):
 
 def lstm_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
     """Those of the controller of a DNC without its memory."""
-    return joined(controller=controller_shapes(inputs, hidden), output=linear(hidden, outputs))
+    return parts(controller=controller_shapes(inputs, hidden), output=linear(hidden, outputs))
 
 
 def feedforward_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
     """Those of a layer in the place of the controller."""
-    return joined(controller=linear(inputs, hidden), output=linear(hidden, outputs))
+    return parts(controller=linear(inputs, hidden), output=linear(hidden, outputs))

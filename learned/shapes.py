@@ -1,25 +1,20 @@
-"""Names and shapes of weights, from sizes alone: layers are built by them, and files of weights are held against them.
-
-Importing this imports no torch.
-"""
+"""How large the weights of layers are, by their names: for who must know it before any is drawn."""
 
 Shape = tuple[int, ...]
-"""Of one tensor, as PyTorch has it."""
-
 Shapes = dict[str, Shape]
-"""Of all weights of a layer or a network, by the names that PyTorch gives them."""
+"""As in the `state_dict` of a module, in its order."""
 
 
-def linear(inputs: int, outputs: int, *, bias: bool = True) -> Shapes:
-    """Those of a linear map."""
-    return {"weight": (outputs, inputs), **({"bias": (outputs,)} if bias else {})}
+def linear(inputs: int, outputs: int) -> Shapes:
+    """A linear layer has a matrix and a bias."""
+    return {"weight": (outputs, inputs), "bias": (outputs,)}
 
 
-def convolution(inputs: int, outputs: int, side: int = 3) -> Shapes:
-    """Those of a convolution with kernels of side x side cells."""
-    return {"weight": (outputs, inputs, side, side), "bias": (outputs,)}
+def convolution(channels: int, outputs: int, side: int) -> Shapes:
+    """A convolution has a square kernel for each pair of channels, and a bias."""
+    return {"weight": (outputs, channels, side, side), "bias": (outputs,)}
 
 
-def joined(**parts: Shapes) -> Shapes:
-    """Those of a network, by those of its named parts."""
-    return {f"{part}.{name}": shape for part, shapes in parts.items() for name, shape in shapes.items()}
+def parts(**shapes: Shapes) -> Shapes:
+    """A module has the weights of its parts, each with the part's name before its own."""
+    return {f"{part}.{name}": shape for part, those in shapes.items() for name, shape in those.items()}

@@ -9,8 +9,9 @@ from pydantic import Field
 
 from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
 from fogbench.learned.grid_policy import GridPolicy
-from fogbench.learned.shapes import Shapes, joined, linear
-from fogbench.learned.value_iteration.shapes import ACTIONS, planner_shapes
+from fogbench.learned.shapes import Shapes, parts
+from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.value_iteration.sizes import shapes as planner_shapes
 from fogbench.worlds.settings import Probability
 
 
@@ -30,4 +31,4 @@ class Vin(Planning):
 
     def shapes(self) -> Shapes:
         """Those of a VI module, and of a linear map of Q at one cell."""
-        return joined(planner=planner_shapes(CHANNELS), output=linear(ACTIONS, len(OUTPUTS), bias=False))
+        return parts(planner=planner_shapes(CHANNELS), output={"weight": (len(OUTPUTS), ACTIONS)})

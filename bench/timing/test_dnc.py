@@ -16,9 +16,10 @@ import torch
 from pytest_benchmark.fixture import BenchmarkFixture
 from torch import Tensor, nn
 
-from fogbench.learned.dnc.access import AccessState, Heads, access
+from fogbench.learned.dnc.access import AccessState, access, blank, controls
 from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.dnc.fast import fast_access
+from fogbench.learned.dnc.heads import Heads
 from fogbench.worlds.types import Array
 
 THREADS = 2
@@ -32,7 +33,7 @@ Turn = Callable[[], object]
 
 def plain_access(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
     """The equations, called as the fast form."""
-    return access(heads.controls(interface), state)
+    return access(controls(heads, interface), state)
 
 
 FORMS: dict[str, Form] = {"plain": plain_access, "fast": fast_access}
@@ -41,7 +42,7 @@ FORMS: dict[str, Form] = {"plain": plain_access, "fast": fast_access}
 def after_steps(form: Form) -> AccessState[Tensor]:
     """A state after some steps, as the form leaves it."""
     torch.manual_seed(0)
-    state = HEADS.blank(ROWS, (BATCH,))
+    state = blank(HEADS, ROWS, (BATCH,))
     with torch.no_grad():
         for _ in range(STEPS):
             _, state = form(HEADS, torch.randn(BATCH, HEADS.interface), state)

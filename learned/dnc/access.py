@@ -20,9 +20,10 @@ import torch
 from torch import Tensor
 from torch.nn.functional import softplus
 
+from fogbench.learned.dnc.heads import Heads
+
 EPSILON = 1e-6
 """Keeps usages from zero, and norms and their products."""
-
 
 T = TypeVar("T")
 
@@ -69,49 +70,25 @@ class Controls(NamedTuple):
     """[..., R, 2 * K + 1], distributions over backward links, forward links and content."""
 
 
-class Heads(NamedTuple):
-    """The sizes of a memory access that its interface depends on: not the number of rows."""
+def blank(heads: Heads, rows: int, batch: tuple[int, ...] = (), like: Tensor | None = None) -> AccessState[Tensor]:
+    """The state before the first step, all zeros, with the type and device of `like`."""
+    like = torch.empty(()) if like is None else like
+    return AccessState(*(like.new_zeros(batch + shape) for shape in heads.state_shapes(rows)))
 
-    reads: int = 4
-    writes: int = 1
-    word: int = 8
-    links: bool = True
 
-    @property
-    def linked(self) -> int:
-        """`K`."""
-        return self.writes if self.links else 0
-
-    @property
-    def interface_shapes(self) -> tuple[tuple[int, int], tuple[int, int]]:
-        """What the controller gives to the write heads and to the read heads."""
-        return (self.writes, 3 * self.word + 3), (self.reads, self.word + 2 * self.linked + 3)
-
-    @property
-    def interface(self) -> int:
-        """How many numbers that are."""
-        return sum(map(prod, self.interface_shapes))
-
-    def blank(self, rows: int, batch: tuple[int, ...] = (), like: Tensor | None = None) -> AccessState[Tensor]:
-        """The state before the first step, all zeros, with the type and device of `like`."""
-        like = torch.empty(()) if like is None else like
-        read, write, linked = (self.reads, rows), (self.writes, rows), (self.linked, rows)
-        shapes = (self.word, rows), read, write, (rows,), (*linked, rows), linked
-        return AccessState(*(like.new_zeros(batch + shape) for shape in shapes))
-
-    def controls(self, interface: Tensor) -> Controls:
-        """The controls in an interface vector [..., I], which has the write heads first, a head's numbers together."""
-        lead, (writers, readers) = interface.shape[:-1], self.interface_shapes
-        write = interface[..., : prod(writers)].reshape(*lead, *writers)  # [..., W, 3 * D + 3]
-        read = interface[..., prod(writers) :].reshape(*lead, *readers)  # [..., R, D + 2 * K + 3]
-        word = self.word
-        key, strength, value, erase, allocation, gate = torch.split(write, [word, 1, word, word, 1, 1], -1)
-        read_key, read_strength, free, modes = torch.split(read, [word, 1, 1, 2 * self.linked + 1], -1)
-        return Controls(
-            key, softplus(strength)[..., 0], value, erase.sigmoid(),
-            allocation.sigmoid()[..., 0], gate.sigmoid()[..., 0],
-            read_key, softplus(read_strength)[..., 0], free.sigmoid()[..., 0], modes.softmax(-1),
-        )  # fmt: skip
+def controls(heads: Heads, interface: Tensor) -> Controls:
+    """The controls in an interface vector [..., I], which has the write heads first, a head's numbers together."""
+    lead, (writers, readers) = interface.shape[:-1], heads.interface_shapes
+    write = interface[..., : prod(writers)].reshape(*lead, *writers)  # [..., W, 3 * D + 3]
+    read = interface[..., prod(writers) :].reshape(*lead, *readers)  # [..., R, D + 2 * K + 3]
+    word = heads.word
+    key, strength, value, erase, allocation, gate = torch.split(write, [word, 1, word, word, 1, 1], -1)
+    read_key, read_strength, free, modes = torch.split(read, [word, 1, 1, 2 * heads.linked + 1], -1)
+    return Controls(
+        key, softplus(strength)[..., 0], value, erase.sigmoid(),
+        allocation.sigmoid()[..., 0], gate.sigmoid()[..., 0],
+        read_key, softplus(read_strength)[..., 0], free.sigmoid()[..., 0], modes.softmax(-1),
+    )  # fmt: skip
 
 
 def access(controls: Controls, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:

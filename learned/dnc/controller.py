@@ -17,7 +17,7 @@ from torch.autograd.function import once_differentiable
 from torch.nn.functional import linear
 
 from fogbench.learned.dnc.controller_kernels import BACKWARD, FORWARD, squash, squash_back
-from fogbench.learned.dnc.shapes import controller_shapes
+from fogbench.learned.dnc.heads import controller_shapes
 from fogbench.learned.kernels.lanes import LANES, NUMBERS
 from fogbench.learned.kernels.native import blockwise, run
 
@@ -32,10 +32,10 @@ class Controller(nn.Module):
     def __init__(self, inputs: int, hidden: int) -> None:
         """Draw the weights."""
         super().__init__()
-        bound, shapes = hidden**-0.5, controller_shapes(inputs, hidden)
+        bound, sizes = hidden**-0.5, controller_shapes(inputs, hidden)
         self.hidden = hidden
-        self.weight = nn.Parameter(torch.empty(shapes["weight"]).uniform_(-bound, bound))
-        self.bias = nn.Parameter(torch.empty(shapes["bias"]).uniform_(-bound, bound))
+        self.weight = nn.Parameter(torch.empty(sizes["weight"]).uniform_(-bound, bound))
+        self.bias = nn.Parameter(torch.empty(sizes["bias"]).uniform_(-bound, bound))
         with torch.no_grad():
             self.bias[hidden : 2 * hidden] += 1
 

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from fogbench.learned.dnc.access import AccessState, Heads, access
+from fogbench.learned.dnc.access import AccessState, access, blank, controls
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.fast import fast_access
-from fogbench.learned.dnc.shapes import dnc_shapes
+from fogbench.learned.dnc.heads import Heads, shapes
 from fogbench.learned.dnc.single import Weights, single_step
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.layers import linear
@@ -59,10 +59,10 @@ class DNC(nn.Module):
         """
         super().__init__()
         self.heads, self.rows, self.clip, self.fast, self.keep_links_every = heads, rows, clip, fast, keep_links_every
-        shapes = dnc_shapes(inputs, outputs, heads, hidden)
-        self.controller = Controller(inputs + heads.reads * heads.word, hidden)
-        self.interface = linear(shapes, "interface")
-        self.output = linear(shapes, "output")
+        sizes = shapes(inputs, outputs, heads, hidden)
+        self.controller = Controller(inputs + heads.read, hidden)
+        self.interface = linear(sizes["interface.weight"])
+        self.output = linear(sizes["output.weight"])
         self.settled: Weights | None = None
 
     def settle(self) -> None:
@@ -76,8 +76,8 @@ class DNC(nn.Module):
         """The state before the first step: zeros."""
         weight = self.output.weight
         hidden = weight.new_zeros(*batch, self.controller.hidden)
-        reads = weight.new_zeros(*batch, self.heads.reads * self.heads.word)
-        return DNCState(hidden, hidden, reads, self.heads.blank(self.rows, batch, weight))
+        reads = weight.new_zeros(*batch, self.heads.read)
+        return DNCState(hidden, hidden, reads, blank(self.heads, self.rows, batch, weight))
 
     def step(self, x: Tensor, state: DNCState) -> tuple[Tensor, DNCState]:
         """From inputs [..., inputs], with or without a batch, to outputs [..., outputs] and the next state."""
@@ -97,7 +97,7 @@ class DNC(nn.Module):
         """The memory access for an interface vector [..., I]."""
         if self.fast and interface.is_cpu:
             return fast_access(self.heads, interface, state, self.keep_links_every)
-        return access(self.heads.controls(interface), state)
+        return access(controls(self.heads, interface), state)
 
     def forward(self, sequence: Tensor, state: DNCState | None = None) -> tuple[Tensor, DNCState]:
         """Steps through `sequence` [B, T, inputs] or [T, inputs], from a blank state if none is given.

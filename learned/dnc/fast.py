@@ -11,7 +11,8 @@ from torch import Tensor
 from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
-from fogbench.learned.dnc.access import AccessState, Heads
+from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import JOB
 from fogbench.learned.dnc.layout import Buffers, Layout, layout
 from fogbench.learned.dnc.step import backward, forward, relink

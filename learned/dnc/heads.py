@@ -1,7 +1,9 @@
-"""The sizes of a memory access that its interface depends on. Importing this imports no torch."""
+"""The sizes of a differentiable neural computer, which need no PyTorch; the letters are those of the file `access`."""
 
 from math import prod
 from typing import NamedTuple
+
+from fogbench.learned.shapes import Shape, Shapes, linear, parts
 
 
 class Heads(NamedTuple):
@@ -18,6 +20,11 @@ class Heads(NamedTuple):
         return self.writes if self.links else 0
 
     @property
+    def read(self) -> int:
+        """How many numbers all read heads read."""
+        return self.reads * self.word
+
+    @property
     def interface_shapes(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """What the controller gives to the write heads and to the read heads."""
         return (self.writes, 3 * self.word + 3), (self.reads, self.word + 2 * self.linked + 3)
@@ -26,3 +33,22 @@ class Heads(NamedTuple):
     def interface(self) -> int:
         """How many numbers that are."""
         return sum(map(prod, self.interface_shapes))
+
+    def state_shapes(self, rows: int) -> tuple[Shape, ...]:
+        """What a sample's state has, in the order of `AccessState`."""
+        read, write, linked = (self.reads, rows), (self.writes, rows), (self.linked, rows)
+        return (self.word, rows), read, write, (rows,), (*linked, rows), linked
+
+
+def controller_shapes(inputs: int, hidden: int) -> Shapes:
+    """The weights of a `Controller` with these arguments."""
+    return linear(inputs + hidden, 4 * hidden)
+
+
+def shapes(inputs: int, outputs: int, heads: Heads, hidden: int) -> Shapes:
+    """The weights of a `DNC` with these arguments."""
+    return parts(
+        controller=controller_shapes(inputs + heads.read, hidden),
+        interface=linear(hidden, heads.interface),
+        output=linear(hidden + heads.read, outputs),
+    )

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from torch import Tensor
 
-from fogbench.learned.dnc.access import AccessState, Heads
+from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.kernels.lanes import LANES
 
 
@@ -112,11 +113,11 @@ def layout(heads: Heads, rows: int, batch: tuple[int, ...]) -> Layout:
     blocks = -(-prod(batch) // LANES)
     pitch = LANES * (blocks | 1) if blocks else 0
     views, filled = [], {True: 0, False: 0}
-    for name, part in zip(AccessState._fields, heads.blank(rows), strict=True):
+    for name, shape in zip(AccessState._fields, heads.state_shapes(rows), strict=True):
         own = name == "links"
-        strides = tuple(pitch * stride for stride in part.stride())
-        views.append(View((*batch, *part.shape), (1,) * len(batch) + strides, pitch * filled[own]))
-        filled[own] += part.numel()
+        strides = tuple(pitch * prod(shape[axis + 1 :]) for axis in range(len(shape)))
+        views.append(View((*batch, *shape), (1,) * len(batch) + strides, pitch * filled[own]))
+        filled[own] += prod(shape)
     sizes = prod(batch), pitch, heads.word, rows, heads.reads, heads.writes, heads.linked
     tape = heads.interface + rows * (2 * heads.writes + heads.reads + 2)
     reads = *batch, heads.reads, heads.word

@@ -12,8 +12,9 @@ import torch
 from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
-from fogbench.learned.dnc.access import AccessState, Heads
+from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.controller_kernels import rows, squash_sample
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import SIZES, STATES, interface_size, sizes_of, state_of, tape_size, taped
 from fogbench.learned.dnc.layout import Packed, layout
 from fogbench.learned.dnc.step import step

@@ -21,7 +21,7 @@ class CnnMemoryNetwork(RememberingNetwork):
         """Draw the weights."""
         super().__init__(settings, settings.planned)
         shapes = settings.shapes()
-        layers = ((convolution(shapes, f"convolutions.{2 * k}"), nn.ReLU()) for k in range(4))
+        layers = ((convolution(shapes[f"convolutions.{2 * k}.weight"]), nn.ReLU()) for k in range(4))
         self.convolutions = nn.Sequential(*(part for layer in layers for part in layer))
 
     def plan(self, inputs: Inputs) -> Tensor:

@@ -5,7 +5,6 @@ from typing import Any, NamedTuple, cast
 import torch
 from torch import Tensor, nn
 
-from fogbench.learned.dnc.access import Heads
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.encoding.grid import Inputs
@@ -21,7 +20,7 @@ class RememberingNetwork(Network):
     def __init__(self, settings: Remembering, planned: int) -> None:
         """Draw the weights; `planned` is how many numbers `plan` gives."""
         super().__init__()
-        self.features = linear(settings.remembering_shapes(planned), "features")
+        self.features = linear(settings.remembering_shapes(planned)["features.weight"])
         self.memory = remember(settings)
 
     def see(self, inputs: Inputs) -> Tensor:
@@ -45,7 +44,7 @@ def remember(settings: Remembering) -> "DNC | LSTM | FeedForward":
         return LSTM(inputs, outputs, hidden)
     if settings.memory == "feedforward":
         return FeedForward(inputs, outputs, hidden)
-    return DNC(inputs, outputs, Heads(*settings.heads), rows=settings.memory_rows, hidden=hidden)
+    return DNC(inputs, outputs, settings.heads, rows=settings.memory_rows, hidden=hidden)
 
 
 class LSTMState(NamedTuple):
@@ -64,7 +63,7 @@ class LSTM(nn.Module):
         """Draw the weights."""
         super().__init__()
         self.controller = Controller(inputs, hidden)
-        self.output = linear(lstm_shapes(inputs, outputs, hidden), "output")
+        self.output = linear(lstm_shapes(inputs, outputs, hidden)["output.weight"])
 
     def blank(self, batch: tuple[int, ...] = ()) -> LSTMState:
         """The state before the first step: zeros."""
@@ -84,7 +83,7 @@ class FeedForward(nn.Module):
         """Draw the weights."""
         super().__init__()
         shapes = feedforward_shapes(inputs, outputs, hidden)
-        self.controller, self.output = linear(shapes, "controller"), linear(shapes, "output")
+        self.controller, self.output = linear(shapes["controller.weight"]), linear(shapes["output.weight"])
 
     def blank(self, batch: tuple[int, ...] = ()) -> tuple[()]:
         """Nothing is remembered, whatever the batch."""

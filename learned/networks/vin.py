@@ -19,7 +19,7 @@ class VinNetwork(Network):
         """Draw the weights."""
         super().__init__()
         self.planner = planner(settings)
-        self.output = linear(settings.shapes(), "output")
+        self.output = linear(settings.shapes()["output.weight"], bias=False)
 
     def blank(self, batch: tuple[int, ...]) -> tuple[()]:
         """Nothing is remembered, whatever the batch."""

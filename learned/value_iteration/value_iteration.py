@@ -18,7 +18,7 @@ from torch.nn.functional import conv2d
 
 from fogbench.learned.layers import convolution
 from fogbench.learned.value_iteration.fast import fast
-from fogbench.learned.value_iteration.shapes import ACTIONS, HIDDEN, planner_shapes, reward_shapes
+from fogbench.learned.value_iteration.sizes import ACTIONS, HIDDEN, reward_map_shapes, shapes
 
 
 class RewardMap(nn.Module):
@@ -27,9 +27,9 @@ class RewardMap(nn.Module):
     def __init__(self, channels: int, hidden: int = HIDDEN, rewards: int = ACTIONS) -> None:
         """Two convolutions with PyTorch's initial weights."""
         super().__init__()
-        shapes = reward_shapes(channels, hidden, rewards)
-        self.features = convolution(shapes, "features")
-        self.mix = convolution(shapes, "mix")
+        sizes = reward_map_shapes(channels, hidden, rewards)
+        self.features = convolution(sizes["features.weight"])
+        self.mix = convolution(sizes["mix.weight"])
         self.settled: tuple[Tensor, Tensor] | None = None
 
     def forward(self, image: Tensor) -> Tensor:
@@ -65,8 +65,7 @@ class ValueIteration(nn.Module):
         """
         super().__init__()
         self.reward_map = RewardMap(channels)
-        actions, channels, *side = planner_shapes(channels)["kernels"]
-        self.kernels = nn.Conv2d(channels, actions, side, bias=False).weight
+        self.kernels = convolution(shapes(channels)["kernels"], bias=False).weight
         self.iterations = iterations
         self.discount = discount
 

@@ -24,7 +24,7 @@ from fogbench.bench.playing.loop import play
 from fogbench.bench.reading.scenario import read_scenario
 from fogbench.bench.shipped import find
 from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.dnc.access import Heads
+from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.value_iteration.value_iteration import ValueIteration
 from fogbench.worlds.kernel import _CALLBACKS as loops
 

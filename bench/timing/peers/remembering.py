@@ -10,8 +10,8 @@ import torch
 from torch import nn
 from turns import Turns, elapsed, milliseconds
 
-from fogbench.learned.dnc.access import Heads
 from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.dnc.heads import Heads
 
 THREADS = 2
 BATCH, STEPS, INPUTS, HIDDEN, ROWS = 64, 10, 16, 256, 32
