@@ -81,9 +81,9 @@ def _watch(variant: Variant, entry: Entry, row: Mapping[str, Any]) -> Iterator[t
     agent: Any = entry.settings.start(episode_world(variant, episode).task, episode_stream(variant, "agent", episode))
     for moment, action in zip(retrace(variant, episode, actions), actions, strict=False):  # a last one, undecided
         seen = glimpse(agent, moment.observation)
-        if seen.move != action:
+        if seen.action != action:
             raise Mistake(
-                f"episode {episode} of {entry.label} in {variant.name}: got {seen.move.name} at step "
+                f"episode {episode} of {entry.label} in {variant.name}: got {seen.action.name} at step "
                 f"{moment.observation.step}; expected {Move(int(action)).name}, as recorded (on another machine?)."
             )
         yield moment, seen

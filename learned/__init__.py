@@ -7,6 +7,12 @@ LEARNED = {
 }
 """Policies that ship with the project, as `module:class`."""
 
+ENCODINGS = {"grid": "fogbench.learned.encoding.grid:GridEncoding"}
+"""What networks see of an episode, and what their outputs mean, by the kind of world (see `encoding.encoding`).
+
+Other packages add theirs by the group `fogbench.encodings`.
+"""
+
 EXTRAS = dict.fromkeys(LEARNED, "learned")
 """The extra of the project (`pip install ".[learned]"`) that a policy needs."""
 

@@ -1,20 +1,18 @@
 """Networks with their weights, and the decisions of one episode."""
 
 from functools import lru_cache
-from typing import cast
+from typing import Any, cast
 
 import torch
 from torch import Tensor
 
 from fogbench.learned import checkpoint
 from fogbench.learned.checkpoint import NONE, form
-from fogbench.learned.encoding.grid import STILL, Inputs, encode, gather
-from fogbench.learned.grid_policy import GridPolicy
+from fogbench.learned.encoding.encoding import Viewpoint
 from fogbench.learned.networks.network import Network, settled, tensors
 from fogbench.learned.policy import Policy
-from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Cell, Move, Observation, Task
+from fogbench.worlds.types import Observation, Task
 
 
 def load(settings: Policy) -> Network:
@@ -48,43 +46,43 @@ def weighted(settings: Policy) -> Network:
 
 
 class PolicyAgent:
-    """One episode of a network, which takes the move of the highest score; of equals, the first."""
+    """One episode of a network, which takes the output of the highest score; of equals, the first."""
 
-    def __init__(self, settings: GridPolicy, task: Task) -> None:
-        """Nothing is remembered yet."""
+    action: Any = None
+    """What was decided last."""
+
+    def __init__(self, settings: Policy, task: Task) -> None:
+        """Nothing is remembered yet.
+
+        Raises:
+            Mistake: the network is not for such a task.
+        """
         self.network = weighted(settings)
-        self.frame = settings.shown(task)
+        self.encoding = settings.encoding()
+        self.viewpoint: Viewpoint = self.encoding.start(task)
         self.device = settings.device
-        self.goal: Cell = task.goal
-        self.stitched = KnownMap(task.extent) if settings.stitched else None
         self.state = self.network.blank((1,))
-        self.move = STILL
 
-    def act(self, observation: Observation) -> Move:
+    def act(self, observation: Observation) -> Any:
         """One step of the network."""
         self.decide(self.perceive(observation))
-        return Move(self.move)
+        return self.action
 
-    def perceive(self, observation: Observation) -> Inputs:
-        """What the network sees of an observation."""
-        maps = None
-        if self.stitched:
-            self.stitched.update(observation)
-            maps = [self.stitched.cells]
-        known = gather([observation], [self.goal], [self.move], maps)
-        return encode(known, self.frame).to(self.device)
+    def perceive(self, observation: Observation) -> Any:
+        """What the network sees after an observation."""
+        self.viewpoint.see(observation)
+        return self.encoding.encode([self.viewpoint]).to(self.device)
 
     @torch.inference_mode()
-    def decide(self, inputs: Inputs) -> Tensor:
-        """Take a step; returns the scores [1, 4] of the moves."""
+    def decide(self, inputs: Any) -> Tensor:
+        """Take a step; returns the scores [1, A] of the outputs."""
         scores, self.state = self.network(inputs, self.state)
-        self.move = int(scores.argmax())
+        self.action = self.viewpoint.act(int(scores.argmax()))
         return cast(Tensor, scores)
 
     def memory_bytes(self) -> int:
-        """The state of the network, and the known map where it sees one."""
-        known = self.stitched.cells.nbytes if self.stitched else 0
-        return known + sum(tensor.nbytes for tensor in tensors(self.state))
+        """The state of the network, and what its viewpoint carries."""
+        return self.viewpoint.bytes + sum(tensor.nbytes for tensor in tensors(self.state))
 
     def search_nodes(self) -> int:
         """There is no search."""

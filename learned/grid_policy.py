@@ -2,10 +2,9 @@
 
 from typing import ClassVar, Literal
 
-from fogbench.learned.encoding.grid_sizes import Frame
+from fogbench.learned.encoding.grid_sizes import Frame, by
 from fogbench.learned.policy import Policy, Size
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Task
 
 
 class GridPolicy(Policy):
@@ -25,16 +24,6 @@ class GridPolicy(Policy):
         """What the network's image shows of the world."""
         return Frame(self.size, self.reading == "window")
 
-    def shown(self, task: Task) -> Frame:
-        """What the network's image shows of the world of a task.
-
-        Raises:
-            Mistake: a network that was made for maps of one size meets another.
-        """
-        if not self.frame.fits(task.extent):
-            raise Mistake(f"got a map of {by(task.extent)}; expected {by(self.size)}, the size")
-        return self.frame
-
     def check(self, extent: tuple[float, ...] | None) -> None:
         """Hold the size against that of all maps.
 
@@ -43,8 +32,3 @@ class GridPolicy(Policy):
         """
         if extent is not None and not self.frame.fits(extent):
             raise Mistake(f"a network for maps of {by(extent)} (this one is for {by(self.size)})")
-
-
-def by(extent: tuple[float, ...]) -> str:
-    """A size in words: `6x9`."""
-    return "x".join(map(str, extent))

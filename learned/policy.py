@@ -7,7 +7,7 @@ is named by strings, and loaded by the first agent that starts.
 
 from math import prod
 from pkgutil import resolve_name
-from typing import Annotated, Any, ClassVar, Literal, Self, cast
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import (
@@ -20,15 +20,20 @@ from pydantic import (
 )
 from pydantic_core import to_jsonable_python
 
-from fogbench.learned import checkpoint
+from fogbench.learned import ENCODINGS, checkpoint
 from fogbench.learned.checkpoint import NONE
+from fogbench.learned.encoding.encoding import Encoding
 from fogbench.learned.shapes import Shapes
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.settings import Settings, whole
+from fogbench.worlds.tables import named, registered
 from fogbench.worlds.types import Agent, Task
 
 AGENT = "fogbench.learned.agent"
-"""The module of the agent, which needs PyTorch."""
+"""The module of the agent, which stands on PyTorch and on this one."""
+
+ENCODED = "fogbench.encodings"
+"""The group of entry points that name encodings."""
 
 Size = Annotated[int, Field(ge=1, le=1024)]
 """Of a part of a network."""
@@ -63,6 +68,19 @@ class Policy(Settings):
         """
         return None
 
+    def encoding(self) -> Encoding:
+        """What its network sees of an episode, and what the outputs mean; by default as the kind of world has it.
+
+        Raises:
+            Mistake: its kind of world has no encoding.
+        """
+        (kind,) = self.kinds
+        found: Any = named(ENCODINGS, ENCODED, kind)
+        if found is None:
+            raise Mistake(f"got a network for worlds of kind {kind}, which have no encoding")
+        encoding: Encoding = found(self)
+        return encoding
+
     def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; it needs no luck.
 
@@ -70,11 +88,14 @@ class Policy(Settings):
             Mistake: the network is not for such a task.
         """
         del rng
-        return cast(Agent, resolve_name(f"{AGENT}:PolicyAgent")(self, task))
+        agent: Agent = resolve_name(f"{AGENT}:PolicyAgent")(self, task)
+        return agent
 
     def uses(self) -> tuple[str, ...]:
-        """Modules that play for it and that no import statement names."""
-        return tuple(target.partition(":")[0] for target in (AGENT, self.made_of) if target)
+        """Modules that play for it and that no import statement names: of its agent, its network and its encoding."""
+        encodings = {**registered(ENCODED), **ENCODINGS}
+        targets = [self.made_of, *(encodings[kind] for kind in sorted(self.kinds) if kind in encodings)]
+        return (AGENT, *(target.partition(":")[0] for target in targets if target))
 
     def check(self, extent: tuple[float, ...] | None) -> None:
         """Hold it against the extent of all maps that it is to play on; None: they differ.

@@ -1,4 +1,8 @@
-"""Classical planners, by the name they have in a scenario. Importing this imports none of them."""
+"""Classical planners, by the name they have in a scenario, and who judges. Importing this imports none of them."""
+
+from typing import Any, NamedTuple
+
+from fogbench.worlds.tables import named
 
 PLANNERS = {
     "astar": "fogbench.planners.astar:AStar",
@@ -12,3 +16,29 @@ PLANNERS = {
 
 EXTRAS = {"rrt_star": "ompl"}
 """The extra of the project (`pip install ".[ompl]"`) that a planner needs."""
+
+
+class Reference(NamedTuple):
+    """The same-information reference of a kind of world: a planner that sees what every agent sees."""
+
+    name: str
+    """What reports call it."""
+    settings: str
+    """`module:class`; its defaults are played."""
+
+
+REFERENCES = {"grid": Reference("A*", "fogbench.planners.astar:AStar")}
+"""By the kind of world; other packages add theirs by the group `fogbench.references`."""
+
+JUDGES = {"grid": "fogbench.planners.grid_judge:GridJudge"}
+"""What knows which actions are right (see `judging`), by the kind of world; others by the group `fogbench.judges`."""
+
+
+def reference_of(kind: str) -> Reference | None:
+    """The reference of a kind; None: its episodes have none."""
+    return named(REFERENCES, "fogbench.references", kind)
+
+
+def judge_of(kind: str) -> Any | None:
+    """The class of the judge of a kind, or of what only teaches; None: its episodes are not judged."""
+    return named(JUDGES, "fogbench.judges", kind)

@@ -34,7 +34,7 @@ AGENT = Table(
     ("fogbench.planners", "fogbench.learned"),
     ("kinds", "start", "parameter_bytes"),
 )
-NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "frame"))
+NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "encoding"))
 KIND = Table(KINDS, (), ())
 
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}

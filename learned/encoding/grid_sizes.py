@@ -18,6 +18,11 @@ OUTPUTS = ("down", "right", "up", "left")
 """What the outputs of a network mean: the four moves, in the order of `Move`."""
 
 
+def by(extent: tuple[float, ...]) -> str:
+    """A size in words: `6x9`."""
+    return "x".join(map(str, extent))
+
+
 class Frame(NamedTuple):
     """Which part of the world an image shows."""
 

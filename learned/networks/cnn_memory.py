@@ -6,7 +6,7 @@ from torch import Tensor, nn
 from torch.nn.functional import pad
 
 from fogbench.learned.cnn_memory import CnnMemory
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.layers import convolution
 from fogbench.learned.networks.memory import RememberingNetwork
 

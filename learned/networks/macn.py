@@ -7,7 +7,7 @@ where they are higher; with them comes Q at the agent's cell.
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.macn import Macn
 from fogbench.learned.networks.macn_single import Weights, see
 from fogbench.learned.networks.memory import RememberingNetwork

@@ -14,7 +14,7 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SEEN
 from fogbench.learned.kernels.lanes import NUMBERS
 from fogbench.learned.kernels.linear import apply

@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import OUTPUTS
 from fogbench.learned.layers import linear
 from fogbench.learned.memory import Remembering, feedforward_shapes, lstm_shapes

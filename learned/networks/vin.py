@@ -4,7 +4,7 @@ from typing import cast
 
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.layers import linear
 from fogbench.learned.networks.network import Network

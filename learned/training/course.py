@@ -16,8 +16,9 @@ from typing import Any, NamedTuple
 import torch
 
 from fogbench.learned import checkpoint
-from fogbench.learned.training.imitation import Student, rehearse, validate
+from fogbench.learned.training.imitation import Student
 from fogbench.learned.training.recipe import Recipe
+from fogbench.learned.training.trials import rehearse, validate
 from fogbench.worlds.files import put
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.streams import digest

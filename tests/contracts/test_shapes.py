@@ -1,6 +1,9 @@
 """The contract of every learned policy: its settings alone say what weights its network has."""
 
+import numpy as np
+
 from fogbench.learned.policy import Policy
+from fogbench.worlds.types import Budget, Task
 
 
 def test_shapes_are_those_of_the_network(policy: Policy) -> None:
@@ -12,6 +15,7 @@ def test_shapes_are_those_of_the_network(policy: Policy) -> None:
 
 
 def test_what_plays_is_named(policy: Policy) -> None:
-    """The modules that no import statement names are told: that of the network, and that of the agent."""
-    assert type(policy.network()).__module__ in policy.uses()
-    assert "fogbench.learned.agent" in policy.uses()
+    """The modules that no import statement names are told: of the agent, the network and the encoding."""
+    task = Task("grid", (0, 0), None, Budget(1), getattr(policy, "size", (1, 1)))
+    plays = [policy.start(task, np.random.default_rng()), policy.network(), policy.encoding()]
+    assert policy.uses() == tuple(type(each).__module__ for each in plays)

@@ -42,7 +42,8 @@ def test_looking_changes_no_decision(policy: Policy, draw: Callable[..., Any]) -
         observation = world.sense(state, rng)
         inputs = alone.perceive(observation)
         seen, move = glimpse(watched, observation), alone.act(observation)
-        assert (seen.move, seen.scores.argmax(), seen.scores.shape) == (move, move, (4,))
+        assert (seen.action, seen.scores.argmax(), seen.scores.shape) == (move, move, (4,))
+        assert seen.outputs == ("down", "right", "up", "left")
         assert np.array_equal(seen.image, inputs.image.flatten())
         assert np.array_equal(seen.planned, alone.network.plan(inputs).flatten())
         for name, numbers in held(alone.state).items():

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SIGHT
 from fogbench.learned.macn import Macn
 from fogbench.learned.networks.memory import LSTM, FeedForward, remember
