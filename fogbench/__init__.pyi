@@ -1,5 +1,8 @@
-from .learned.encoding.grid import Inputs as Inputs
-from .learned.network import Network as Network
+from .learned.encoding.encoding import Encoding as Encoding
+from .learned.encoding.encoding import Viewpoint as Viewpoint
+from .learned.encoding.grid_inputs import Inputs as Inputs
+from .learned.grid_policy import GridPolicy as GridPolicy
+from .learned.networks.network import Network as Network
 from .learned.policy import Policy as Policy
 from .planners import Reference as Reference
 from .planners.astar import glance as glance

@@ -7,5 +7,14 @@ LEARNED = {
 }
 """Policies that ship with the project, as `module:class`."""
 
+ENCODINGS = {"grid": "fogbench.learned.encoding.grid:GridEncoding"}
+"""What networks see of an episode, and what their outputs mean, by the kind of world (see `encoding.encoding`).
+
+Other packages add theirs by the group `fogbench.encodings`.
+"""
+
 EXTRAS = dict.fromkeys(LEARNED, "learned")
 """The extra of the project (`pip install ".[learned]"`) that a policy needs."""
+
+PACKAGES = {"learned": ("safetensors", "torch")}
+"""Packages that an extra brings, and that a policy cannot play without; its settings alone do not import them all."""

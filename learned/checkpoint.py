@@ -1,4 +1,7 @@
-"""Trained weights: a safetensors file, and beside it a card in JSON that says what they are and how they came about."""
+"""Trained weights: a safetensors file, and beside it a card in JSON that says what they are and how they came about.
+
+Importing this imports no torch.
+"""
 
 import json
 import os
@@ -6,13 +9,16 @@ from collections.abc import Callable, Container, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, ValidationError
 from safetensors import SafetensorError
-from safetensors.torch import load, save
-from torch import Tensor, nn
+from safetensors.numpy import load, save
 
+from fogbench.learned.shapes import Shapes
 from fogbench.worlds.files import put, sha256
 from fogbench.worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.types import Array
 
 SHIPPED = Path(__file__).with_name("checkpoints")
 """Where the checkpoints are that go by a name alone."""
@@ -42,24 +48,25 @@ class Card(BaseModel):
     """How it was made, and what it reached."""
 
     def recognise(self, network: str, settings: Mapping[str, Any]) -> None:
-        """Compare it with a class of settings by names alone.
+        """Compare it with a class of settings by names alone; the card of an earlier version may lack some.
 
         Raises:
-            Mistake: it is the card of another network, or of another version.
+            Mistake: it is the card of another network, or of a later version.
         """
         if self.network != network:
             raise Mistake(f"a checkpoint of {network} (this is one of {self.network})")
-        if odd := sorted(self.settings.keys() ^ settings.keys()):
-            how = "has" if odd[0] in self.settings else "lacks"
-            raise Mistake(f"a checkpoint of this version (its card {how} {odd[0]})")
+        if odd := sorted(self.settings.keys() - settings.keys()):
+            raise Mistake(f"a checkpoint of this version (its card has {odd[0]})")
 
-    def compare(self, settings: Mapping[str, Any], given: Container[str]) -> None:
+    def compare(self, settings: Mapping[str, Any], given: Container[str], former: Mapping[str, Any]) -> None:
         """Compare it with the settings that were laid over it, of which some were `given`.
+
+        A setting that the card lacks was made later; until then all networks were as its `former` value makes them.
 
         Raises:
             Mistake: they differ where they must not, or the card has no such values.
         """
-        for name, value in sorted(self.settings.items()):
+        for name, value in sorted({**former, **self.settings}.items()):
             if settings[name] != value and name not in given:
                 raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
             if settings[name] != value and name not in WEIGHTLESS:
@@ -116,11 +123,16 @@ def first_of(error: ValidationError) -> str:
     return f"{where}: {detail['msg']}" if where else detail["msg"]
 
 
-def read_weights(place: Path, card: Card, network: nn.Module) -> None:
-    """Put the weights of a file into a network.
+def read_weights(place: Path, card: Card, forms: Mapping[str, str]) -> dict[str, Array]:
+    """The weights of a file.
+
+    Args:
+        place: the file.
+        card: which must have been written for it.
+        forms: how each of the weights must lie there, by its name.
 
     Raises:
-        Mistake: the file is not the one that its card was written for, or it does not fit the network.
+        Mistake: the file is not the one that its card was written for, or other weights are in it.
     """
     try:
         contents = place.read_bytes()
@@ -129,26 +141,32 @@ def read_weights(place: Path, card: Card, network: nn.Module) -> None:
     if sha256(contents) != card.sha256:
         raise Mistake(f"a checkpoint that is whole ({place.name} is not the file that its card was written for)")
     try:
-        weights = load(contents)
+        weights: dict[str, Array] = load(contents)
     except (SafetensorError, KeyError) as error:
         raise Mistake(f"a file of weights ({place.name}: {error})") from None
-    wanted = network.state_dict()
-    for name in sorted(wanted.keys() | weights.keys()):
-        here, there = _told(wanted.get(name)), _told(weights.get(name))
+    found = {name: form(array) for name, array in weights.items()}
+    for name in sorted(forms.keys() | found.keys()):
+        here, there = forms.get(name, "missing"), found.get(name, "missing")
         if here != there:
             raise Mistake(f"a checkpoint that fits its card ({place.name}: {name} is {there} there, {here} here)")
-        if not weights[name].isfinite().all():
+        if not np.isfinite(weights[name]).all():
             raise Mistake(f"a checkpoint of numbers ({place.name}: {name} has some that are none)")
-    network.load_state_dict(weights)
+    return weights
 
 
-def write(place: Path, network: str, settings: dict[str, Any], weights: dict[str, Tensor], training: Any) -> None:
+def form(array: Any) -> str:
+    """How the numbers of an array, or a tensor, lie in it: `float32 [4, 3]`."""
+    return f"{str(array.dtype).removeprefix('torch.')} {list(array.shape)}"
+
+
+def forms(shapes: Shapes) -> dict[str, str]:
+    """The forms of weights of some shapes; their numbers are all of one type."""
+    return {name: f"float32 {list(shape)}" for name, shape in shapes.items()}
+
+
+def write(place: Path, network: str, settings: dict[str, Any], weights: Mapping[str, ArrayLike], training: Any) -> None:
     """Write a file of weights and its card, each whole or not at all."""
-    contents = save({name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()})
+    contents = save({name: np.ascontiguousarray(array) for name, array in weights.items()})
     card = Card(network=network, settings=settings, sha256=sha256(contents), training=training)
     put(place, contents)
     put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
-
-
-def _told(tensor: Tensor | None) -> str:
-    return "missing" if tensor is None else f"{str(tensor.dtype).removeprefix('torch.')} {list(tensor.shape)}"

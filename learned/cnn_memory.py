@@ -1,45 +1,36 @@
-"""CNN + Memory: a MACN with four convolutions in the place of its VI module (Khan et al. 2018, section 4)."""
+"""Settings of CNN + Memory: a MACN with four convolutions in the place of its VI module (Khan et al. 2018)."""
 
 from itertools import pairwise
-from typing import cast
+from math import prod
+from typing import ClassVar
 
-from torch import Tensor, nn
-from torch.nn.functional import pad
-
-from fogbench.learned.encoding.grid import CHANNELS, Inputs
-from fogbench.learned.memory import Remembering, RememberingNetwork
+from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
+from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
-from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.shapes import Shapes, convolution, parts
 
-ALIKE = 16
-"""Batches are filled up to a multiple: a batch shrinks as its episodes end, and oneDNN prepares for each new size."""
+SIDE = 3
+"""Of the kernels."""
 
 
 class CnnMemory(Remembering):
     """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
 
+    made_of: ClassVar[str] = "fogbench.learned.networks.cnn_memory:CnnMemoryNetwork"
+
     channels: Size = 32
     """Of the first three convolutions; the last has as many as there are moves, like Q."""
 
-    def network(self) -> "CnnMemoryNetwork":
-        """A network with weights drawn anew."""
-        return CnnMemoryNetwork(self)
+    @property
+    def planned(self) -> int:
+        """Numbers from the last convolution."""
+        return len(OUTPUTS) * prod(self.size)
 
+    def shapes(self) -> Shapes:
+        """Those of the convolutions before a memory."""
+        return self.remembering_shapes(self.planned) | parts(convolutions=self._convolutions())
 
-class CnnMemoryNetwork(RememberingNetwork):
-    """Convolutions before a memory."""
-
-    def __init__(self, settings: CnnMemory) -> None:
-        """Draw the weights."""
-        rows, columns = settings.size
-        super().__init__(settings, ACTIONS * rows * columns)
-        widths = CHANNELS, *[settings.channels] * 3, ACTIONS
-        layers = ((nn.Conv2d(before, after, 3, padding=1), nn.ReLU()) for before, after in pairwise(widths))
-        self.convolutions = nn.Sequential(*(part for layer in layers for part in layer))
-
-    def plan(self, inputs: Inputs) -> Tensor:
-        """The maps of the last layer: [B, 4 * H * W]."""
-        batch = len(inputs.image)
-        filled = -batch % ALIKE if batch > 1 else 0
-        image = pad(inputs.image, (0, 0) * 3 + (0, filled))  # [B + filled, 3, H, W]
-        return cast(Tensor, self.convolutions(image))[:batch].flatten(1)
+    def _convolutions(self) -> Shapes:
+        """In a row, each before a layer without weights."""
+        widths = CHANNELS, *[self.channels] * 3, len(OUTPUTS)
+        return parts(**{str(2 * k): convolution(*ends, SIDE) for k, ends in enumerate(pairwise(widths))})

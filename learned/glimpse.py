@@ -1,32 +1,30 @@
 """What goes on in a network as it decides: nothing is computed for it unless somebody looks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import torch
 
+from fogbench.learned.agent import PolicyAgent
 from fogbench.learned.dnc.dnc import DNCState
-from fogbench.learned.memory import LSTMState
-from fogbench.learned.policy import PolicyAgent
-from fogbench.worlds.types import Array, Move, Observation
-
-OUTPUTS = tuple(move.name.lower() for move in Move)
+from fogbench.learned.networks.memory import LSTMState
+from fogbench.worlds.types import Array, Observation
 
 
 class Glimpse(NamedTuple):
     """One decision, from the inside."""
 
     image: Array
-    """[3 * H * W], what the network plans on."""
+    """[n], all numbers of what the network plans on."""
     planned: Array
     """[planned], what its planning module makes of that; see `Network.plan`."""
     scores: Array
-    """[4], of the moves."""
+    """[A], of the outputs."""
     held: Mapping[str, Array]
     """What is remembered after the decision; see `held`."""
     action: Any
-    outputs: Sequence[str]
-    """What the moves are called."""
+    outputs: tuple[str, ...]
+    """What the outputs are called."""
 
 
 def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
@@ -36,7 +34,8 @@ def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
         planned = agent.network.plan(inputs)
     scores = agent.decide(inputs)
     image, planned, scores = (tensor.flatten().cpu() for tensor in (inputs.image, planned, scores))
-    return Glimpse(image.numpy(), planned.numpy(), scores.numpy(), held(agent.state), Move(agent.move), OUTPUTS)
+    parts = image.numpy(), planned.numpy(), scores.numpy()
+    return Glimpse(*parts, held(agent.state), agent.action, agent.encoding.outputs)
 
 
 def held(state: Any) -> dict[str, Array]:

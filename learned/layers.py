@@ -5,10 +5,10 @@ from torch import nn
 from fogbench.learned.shapes import Shape
 
 
-def linear(weight: Shape) -> nn.Linear:
+def linear(weight: Shape, *, bias: bool = True) -> nn.Linear:
     """A linear layer of a matrix [outputs, inputs]."""
     outputs, inputs = weight
-    return nn.Linear(inputs, outputs)
+    return nn.Linear(inputs, outputs, bias=bias)
 
 
 def convolution(weight: Shape, *, bias: bool = True) -> nn.Conv2d:

@@ -1,52 +1,26 @@
-"""Memory augmented control networks: plan on what is seen, remember, decide (Khan et al. 2018, section 3 and figure 2).
+"""Settings of memory augmented control networks: plan on what is seen, remember, decide (Khan et al. 2018)."""
 
-How the values enter the controller is not said there. Here they come relative to the agent's own, since what matters is
-where they are higher; with them comes Q at the agent's cell.
-"""
+from math import prod
+from typing import ClassVar
 
-import torch
-from torch import Tensor
-
-from fogbench.learned.encoding.grid import Inputs
-from fogbench.learned.macn_single import Weights, see
-from fogbench.learned.memory import Remembering, RememberingNetwork
+from fogbench.learned.encoding.grid_sizes import CHANNELS
+from fogbench.learned.memory import Remembering
+from fogbench.learned.shapes import Shapes, parts
 from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.value_iteration.sizes import shapes as planner_shapes
 from fogbench.learned.vin import Planning
 
 
 class Macn(Planning, Remembering):
     """MACN: value iteration on what the sensor shows, then a DNC, an LSTM or no memory."""
 
-    def network(self) -> "MacnNetwork":
-        """A network with weights drawn anew."""
-        return MacnNetwork(self)
+    made_of: ClassVar[str] = "fogbench.learned.networks.macn:MacnNetwork"
 
+    @property
+    def planned(self) -> int:
+        """Numbers from the VI module: the values of all cells, and Q at the agent's."""
+        return prod(self.size) + ACTIONS
 
-class MacnNetwork(RememberingNetwork):
-    """A VI module before a memory."""
-
-    def __init__(self, settings: Macn) -> None:
-        """Draw the weights."""
-        rows, columns = settings.size
-        super().__init__(settings, rows * columns + ACTIONS)
-        self.planner = settings.planner()
-        self.settled: Weights | None = None
-
-    @torch.no_grad()
-    def settle(self) -> None:
-        """Get ready for single steps without gradients: from now on the weights must not change."""
-        if self.features.weight.is_cpu:
-            layers = *self.planner.reward_map.collapsed(), self.planner.normalised(), *self.features.parameters()
-            self.settled = Weights(*(weight.contiguous() for weight in layers))
-
-    def see(self, inputs: Inputs) -> Tensor:
-        """As for all, for one sample in one call."""
-        if self.settled and len(inputs.image) == 1:
-            return see(self.settled, self.planner.iterations, inputs)
-        return super().see(inputs)
-
-    def plan(self, inputs: Inputs) -> Tensor:
-        """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
-        q, v = self.planner(inputs.image)
-        here = inputs.here(q)  # [B, 4], of which the largest is V there
-        return torch.cat([v.flatten(1), here], 1) - here.amax(1, keepdim=True)
+    def shapes(self) -> Shapes:
+        """Those of a VI module before a memory."""
+        return self.remembering_shapes(self.planned) | parts(planner=planner_shapes(CHANNELS))

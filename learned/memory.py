@@ -1,20 +1,19 @@
-"""Policies that remember: features of what is seen go into a DNC, an LSTM, or a layer that forgets; scores come out."""
+"""Settings of policies that remember: features of what is seen go into a DNC, an LSTM, or a layer that forgets.
 
-from typing import Any, Literal, NamedTuple, cast
+Importing this imports no torch.
+"""
 
-import torch
-from torch import Tensor, nn
+from typing import Literal
 
-from fogbench.learned.dnc.controller import Controller
-from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.dnc.heads import Heads
-from fogbench.learned.encoding.grid import COMPASS, SEEN, Inputs
-from fogbench.learned.network import Network
-from fogbench.learned.policy import Policy, Size
-from fogbench.learned.value_iteration.sizes import ACTIONS
+from fogbench.learned.dnc.heads import Heads, controller_shapes
+from fogbench.learned.dnc.heads import shapes as dnc_shapes
+from fogbench.learned.encoding.grid_sizes import COMPASS, OUTPUTS, SEEN
+from fogbench.learned.grid_policy import GridPolicy
+from fogbench.learned.policy import Size
+from fogbench.learned.shapes import Shapes, linear, parts
 
 
-class Remembering(Policy):
+class Remembering(GridPolicy):
     """A policy with a memory between what it sees and what it does."""
 
     memory: Literal["dnc", "lstm", "feedforward"] = "dnc"
@@ -34,86 +33,33 @@ class Remembering(Policy):
     links: bool = True
     """Whether a DNC keeps temporal links."""
 
+    @property
+    def heads(self) -> Heads:
+        """The sizes of a DNC's memory but for its rows."""
+        return Heads(self.reads, self.writes, self.word, self.links)
+
     def idle(self) -> frozenset[str]:
         """Those of a DNC's memory, without one."""
         return frozenset() if self.memory == "dnc" else frozenset({"memory_rows", "word", "reads", "writes", "links"})
 
-    def remember(self) -> "DNC | LSTM | FeedForward":
-        """A memory with weights drawn anew."""
+    def remembering_shapes(self, planned: int) -> Shapes:
+        """The shapes of the features' weights, and of the memory's; `planned` numbers come from a planning module."""
+        features = linear(planned + SEEN + COMPASS, self.features)
+        return parts(features=features, memory=self._memory_shapes())
+
+    def _memory_shapes(self) -> Shapes:
         if self.memory == "lstm":
-            return LSTM(self.features, self.hidden)
+            return lstm_shapes(self.features, len(OUTPUTS), self.hidden)
         if self.memory == "feedforward":
-            return FeedForward(self.features, self.hidden)
-        heads = Heads(self.reads, self.writes, self.word, self.links)
-        return DNC(self.features, ACTIONS, heads, rows=self.memory_rows, hidden=self.hidden)
+            return feedforward_shapes(self.features, len(OUTPUTS), self.hidden)
+        return dnc_shapes(self.features, len(OUTPUTS), self.heads, self.hidden)
 
 
-class RememberingNetwork(Network):
-    """What is planned, with the sight and the compass as low-level features, into a memory."""
-
-    def __init__(self, settings: Remembering, planned: int) -> None:
-        """Draw the weights; `planned` is how many numbers `plan` gives."""
-        super().__init__()
-        self.features = nn.Linear(planned + SEEN + COMPASS, settings.features)
-        self.memory = settings.remember()
-
-    def see(self, inputs: Inputs) -> Tensor:
-        """The features [B, F] of what is seen; they depend on nothing that is remembered."""
-        told = torch.cat([self.plan(inputs), inputs.sight.flatten(1), inputs.compass], 1)
-        return cast(Tensor, self.features(told)).relu()
-
-    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
-        """One step."""
-        return self.memory.step(self.see(inputs), state)
-
-    def blank(self, batch: tuple[int, ...]) -> Any:
-        """The memory's."""
-        return self.memory.blank(batch)
+def lstm_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
+    """Those of the controller of a DNC without its memory."""
+    return parts(controller=controller_shapes(inputs, hidden), output=linear(hidden, outputs))
 
 
-class LSTMState(NamedTuple):
-    """What an LSTM carries from one step to the next."""
-
-    hidden: Tensor
-    """[..., hidden]"""
-    cell: Tensor
-    """[..., hidden]"""
-
-
-class LSTM(nn.Module):
-    """The controller of a DNC without its memory."""
-
-    def __init__(self, inputs: int, hidden: int) -> None:
-        """Draw the weights."""
-        super().__init__()
-        self.controller = Controller(inputs, hidden)
-        self.output = nn.Linear(hidden, ACTIONS)
-
-    def blank(self, batch: tuple[int, ...] = ()) -> LSTMState:
-        """The state before the first step: zeros."""
-        zeros = self.output.weight.new_zeros(*batch, self.controller.hidden)
-        return LSTMState(zeros, zeros)
-
-    def step(self, x: Tensor, state: LSTMState) -> tuple[Tensor, LSTMState]:
-        """From features [..., inputs] to scores [..., 4] and the next state."""
-        hidden, cell = self.controller(x, state)
-        return self.output(hidden), LSTMState(hidden, cell)
-
-
-class FeedForward(nn.Module):
-    """A layer in the place of the controller."""
-
-    def __init__(self, inputs: int, hidden: int) -> None:
-        """Draw the weights."""
-        super().__init__()
-        self.controller = nn.Linear(inputs, hidden)
-        self.output = nn.Linear(hidden, ACTIONS)
-
-    def blank(self, batch: tuple[int, ...] = ()) -> tuple[()]:
-        """Nothing is remembered, whatever the batch."""
-        del batch
-        return ()
-
-    def step(self, x: Tensor, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
-        """From features [..., inputs] to scores [..., 4]."""
-        return self.output(self.controller(x).relu()), state
+def feedforward_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
+    """Those of a layer in the place of the controller."""
+    return parts(controller=linear(inputs, hidden), output=linear(hidden, outputs))

@@ -1,14 +1,15 @@
-"""What all learned policies share: settings that find their weights, and the decisions of one episode.
+"""What the settings of all learned policies share: they find their weights, and hold them against what they say.
 
 A setting that a scenario does not give is as in the checkpoint's card; one that it does give must be as in the card,
-unless no weight depends on it (`fogbench.learned.checkpoint.WEIGHTLESS`).
+unless no weight depends on it (`fogbench.learned.checkpoint.WEIGHTLESS`). Reading settings imports no torch: what plays
+is named by strings, and loaded by the first agent that starts.
 """
 
-from functools import lru_cache
-from typing import Annotated, Any, ClassVar, Literal, Self, cast
+from math import prod
+from pkgutil import resolve_name
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-import torch
 from pydantic import (
     Field,
     ModelWrapValidatorHandler,
@@ -17,16 +18,22 @@ from pydantic import (
     field_validator,
     model_validator,
 )
-from torch import Tensor
+from pydantic_core import to_jsonable_python
 
-from fogbench.learned import checkpoint
+from fogbench.learned import ENCODINGS, checkpoint
 from fogbench.learned.checkpoint import NONE
-from fogbench.learned.encoding.grid import STILL, Frame, Inputs, encode, gather
-from fogbench.learned.network import Network, settled, tensors
-from fogbench.worlds.maps.cells import KnownMap
+from fogbench.learned.encoding.encoding import Encoding
+from fogbench.learned.shapes import Shapes
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.settings import Settings, whole
-from fogbench.worlds.types import Cell, Move, Observation, Task
+from fogbench.worlds.tables import named, registered
+from fogbench.worlds.types import Agent, Task
+
+AGENT = "fogbench.learned.agent"
+"""The module of the agent, which stands on PyTorch and on this one."""
+
+ENCODED = "fogbench.encodings"
+"""The group of entry points that name encodings."""
 
 Size = Annotated[int, Field(ge=1, le=1024)]
 """Of a part of a network."""
@@ -35,7 +42,10 @@ Size = Annotated[int, Field(ge=1, le=1024)]
 class Policy(Settings):
     """A network as an agent."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+    kinds: ClassVar[frozenset[str]] = frozenset()
+    """The kind of world that it plays; of several, `encoding` must say how it sees each."""
+    made_of: ClassVar[str] = ""
+    """The class of its network, as `module:class`; it is made of these settings alone."""
 
     checkpoint: Annotated[str, Field(examples=[NONE, "macn-grid", "./mine.safetensors"])]
     """The name of a shipped checkpoint, a file that ends in `.safetensors`, or `none` for fresh weights."""
@@ -43,42 +53,56 @@ class Policy(Settings):
     """Of fresh weights."""
     device: Literal["cpu", "cuda"] = "cpu"
     """Where the network runs."""
-    reading: Literal["window", "map"] = "window"
-    """What the network plans on: a window around the agent, or the whole map, which ties it to one size."""
-    size: tuple[Size, Size] = (11, 11)
-    """Rows and columns of that window or map."""
-    stitched: bool = False
-    """Whether it sees the map known so far; else, the current view alone."""
 
     _weights: str = ""
     """The digest of the checkpoint's weights as they were when these settings were read."""
 
-    def network(self) -> Network:
-        """A network with weights drawn anew."""
-        raise NotImplementedError
+    def network(self) -> Any:
+        """A `fogbench.learned.networks.network.Network` with weights drawn anew; by default one of `made_of`."""
+        return resolve_name(self.made_of)(self)
 
-    def start(self, task: Task, rng: np.random.Generator) -> "PolicyAgent":
+    def shapes(self) -> Shapes | None:
+        """The names and shapes of all weights of the network, of 32 bits each.
+
+        None: these settings do not say, and the network is built to know.
+        """
+        return None
+
+    def encoding(self) -> Encoding:
+        """What its network sees of an episode, and what the outputs mean; by default as the kind of world has it.
+
+        Raises:
+            Mistake: its kind of world has no encoding.
+        """
+        (kind,) = self.kinds
+        found: Any = named(ENCODINGS, ENCODED, kind)
+        if found is None:
+            raise Mistake(f"got a network for worlds of kind {kind}, which have no encoding")
+        encoding: Encoding = found(self)
+        return encoding
+
+    def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; it needs no luck.
 
         Raises:
-            Mistake: a network that was made for maps of one size meets another.
+            Mistake: the network is not for such a task.
         """
         del rng
-        return PolicyAgent(self, task)
+        agent: Agent = resolve_name(f"{AGENT}:PolicyAgent")(self, task)
+        return agent
 
-    def frame(self, task: Task) -> Frame:
-        """What the network's image shows of the world of a task.
+    def uses(self) -> tuple[str, ...]:
+        """Modules that play for it and that no import statement names: of its agent, its network and its encoding."""
+        encodings = {**registered(ENCODED), **ENCODINGS}
+        targets = [self.made_of, *(encodings[kind] for kind in sorted(self.kinds) if kind in encodings)]
+        return (AGENT, *(target.partition(":")[0] for target in targets if target))
+
+    def check(self, extent: tuple[float, ...] | None) -> None:
+        """Hold it against the extent of all maps that it is to play on; None: they differ.
 
         Raises:
-            Mistake: a network that was made for maps of one size meets another.
+            Mistake: it cannot play on them.
         """
-        if not self.fits(task.extent):
-            raise Mistake(f"got a map of {_by(task.extent)}; expected {_by(self.size)}, the size")
-        return Frame(self.size, self.reading == "window")
-
-    def fits(self, extent: tuple[float, ...] | None) -> bool:
-        """Whether it can play on maps of some extent; of maps that differ that is not known yet."""
-        return self.reading == "window" or extent in (None, self.size)
 
     def idle(self) -> frozenset[str]:
         """The settings that mean nothing together with the others; to give one of them another value is a mistake."""
@@ -86,7 +110,10 @@ class Policy(Settings):
 
     def parameter_bytes(self) -> int:
         """The bytes of all weights."""
-        return sum(parameter.nbytes for parameter in weighted(self).parameters())
+        shapes = self.shapes()
+        if shapes is None:
+            return sum(parameter.nbytes for parameter in self._built().parameters())
+        return 4 * sum(map(prod, shapes.values()))
 
     def words(self) -> str:
         """The settings, and the digest of the weights in place of where they are."""
@@ -100,8 +127,11 @@ class Policy(Settings):
     @field_validator("device")
     @classmethod
     def _at_hand(cls, device: str) -> str:
-        if device == "cuda" and not torch.cuda.is_available():
-            raise Mistake("cpu, for PyTorch finds no CUDA device here")
+        if device == "cuda":
+            import torch  # noqa: PLC0415  only now is it asked
+
+            if not torch.cuda.is_available():
+                raise Mistake("cpu, for PyTorch finds no CUDA device here")
         return device
 
     @model_validator(mode="wrap")
@@ -115,93 +145,30 @@ class Policy(Settings):
                 settings = read(card.settings | block)
             except ValidationError as error:
                 raise Mistake(f"a checkpoint whose card can be read ({checkpoint.first_of(error)})") from None
-            card.compare(settings.trained(), block)
+            usual = {name: field.default for name, field in cls.model_fields.items() if not field.is_required()}
+            former = {name: to_jsonable_python(usual[name]) for name in settings.trained().keys() & usual.keys()}
+            card.compare(settings.trained(), block, former)
             settings._weights = card.sha256  # noqa: SLF001  its own
-        usual = {name: field.default for name, field in cls.model_fields.items()}
-        if odd := sorted(name for name in settings.idle() if getattr(settings, name) != usual[name]):
-            raise Mistake(f"no {odd[0]}, which means nothing to such a network")
-        extent: Any = (info.context or {}).get("extent")
-        if not settings.fits(extent):
-            raise Mistake(f"a network for maps of {_by(extent)} (this one is for {_by(settings.size)})")
-        weighted(settings)  # whatever is wrong with the weights is told now
+        settings._check(info)  # noqa: SLF001  its own
         return settings
+
+    def _check(self, info: ValidationInfo) -> None:
+        """Whatever is wrong with the settings and the weights is told when they are read."""
+        usual = {name: field.default for name, field in type(self).model_fields.items()}
+        if odd := sorted(name for name in self.idle() if getattr(self, name) != usual[name]):
+            raise Mistake(f"no {odd[0]}, which means nothing to such a network")
+        self.check((info.context or {}).get("extent"))
+        shapes = self.shapes()
+        if shapes is None:
+            self._built()
+        elif self.checkpoint != NONE:
+            place = checkpoint.place_of(self.checkpoint)
+            checkpoint.read_weights(place, checkpoint.read_card(place), checkpoint.forms(shapes))
+
+    def _built(self) -> Any:
+        """The network with its weights."""
+        return resolve_name(f"{AGENT}:weighted")(self)
 
     def trained(self) -> dict[str, Any]:
         """The settings that a card of these weights has."""
         return self.model_dump(mode="json", exclude={"checkpoint", "seed", "device"})
-
-
-def _by(extent: tuple[float, ...]) -> str:
-    return "x".join(map(str, extent))
-
-
-def load(settings: Policy) -> Network:
-    """A network of some settings, with its weights, on its device, that can be trained.
-
-    Raises:
-        Mistake: the checkpoint is broken or does not fit.
-    """
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(settings.seed)
-        network = settings.network().eval()
-    if settings.checkpoint != NONE:
-        place = checkpoint.place_of(settings.checkpoint)
-        card = checkpoint.read_card(place)
-        if card.sha256 != settings._weights:  # noqa: SLF001  whose words name them
-            raise Mistake(f"a checkpoint that stays as it was ({place.name} was replaced meanwhile)")
-        checkpoint.read_weights(place, card, network)
-    return network.to(settings.device)
-
-
-@lru_cache(maxsize=64)
-def weighted(settings: Policy) -> Network:
-    """The network of some settings as it decides; made once in a process.
-
-    Raises:
-        Mistake: the checkpoint is broken or does not fit.
-    """
-    return settled(load(settings))
-
-
-class PolicyAgent:
-    """One episode of a network, which takes the move of the highest score; of equals, the first."""
-
-    def __init__(self, settings: Policy, task: Task) -> None:
-        """Nothing is remembered yet."""
-        self.network = weighted(settings)
-        self.frame = settings.frame(task)
-        self.device = settings.device
-        self.goal: Cell = task.goal
-        self.stitched = KnownMap(task.extent) if settings.stitched else None
-        self.state = self.network.blank((1,))
-        self.move = STILL
-
-    def act(self, observation: Observation) -> Move:
-        """One step of the network."""
-        self.decide(self.perceive(observation))
-        return Move(self.move)
-
-    def perceive(self, observation: Observation) -> Inputs:
-        """What the network sees of an observation."""
-        maps = None
-        if self.stitched:
-            self.stitched.update(observation)
-            maps = [self.stitched.cells]
-        known = gather([observation], [self.goal], [self.move], maps)
-        return encode(known, self.frame).to(self.device)
-
-    @torch.inference_mode()
-    def decide(self, inputs: Inputs) -> Tensor:
-        """Take a step; returns the scores [1, 4] of the moves."""
-        scores, self.state = self.network(inputs, self.state)
-        self.move = int(scores.argmax())
-        return cast(Tensor, scores)
-
-    def memory_bytes(self) -> int:
-        """The state of the network, and the known map where it sees one."""
-        known = self.stitched.cells.nbytes if self.stitched else 0
-        return known + sum(tensor.nbytes for tensor in tensors(self.state))
-
-    def search_nodes(self) -> int:
-        """There is no search."""
-        return 0

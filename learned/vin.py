@@ -1,22 +1,21 @@
-"""Value iteration networks: plan on what is seen and act on Q at the agent's cell (Tamar et al. 2016). No memory.
+"""Settings of value iteration networks: plan on what is seen and act on Q at the agent's cell (Tamar et al. 2016).
 
 With `stitched: true` it plans on the map known so far (Khan et al. 2018, appendix B.1).
 """
 
-from typing import Annotated, cast
+from typing import Annotated, ClassVar
 
 from pydantic import Field
-from torch import Tensor, nn
 
-from fogbench.learned.encoding.grid import CHANNELS, Inputs
-from fogbench.learned.network import Network
-from fogbench.learned.policy import Policy
+from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
+from fogbench.learned.grid_policy import GridPolicy
+from fogbench.learned.shapes import Shapes, parts
 from fogbench.learned.value_iteration.sizes import ACTIONS
-from fogbench.learned.value_iteration.value_iteration import ValueIteration
+from fogbench.learned.value_iteration.sizes import shapes as planner_shapes
 from fogbench.worlds.settings import Probability
 
 
-class Planning(Policy):
+class Planning(GridPolicy):
     """A policy with a VI module."""
 
     iterations: Annotated[int, Field(ge=1, le=1000)] = 16
@@ -24,38 +23,12 @@ class Planning(Policy):
     discount: Probability | None = None
     """None leaves the value's kernels free, as in the paper; a number makes each a distribution times it."""
 
-    def planner(self) -> ValueIteration:
-        """A VI module with weights drawn anew."""
-        return ValueIteration(CHANNELS, self.iterations, self.discount)
-
 
 class Vin(Planning):
     """VIN: value iteration on what the sensor shows, or on the stitched map, and nothing else."""
 
-    def network(self) -> "VinNetwork":
-        """A network with weights drawn anew."""
-        return VinNetwork(self)
+    made_of: ClassVar[str] = "fogbench.learned.networks.vin:VinNetwork"
 
-
-class VinNetwork(Network):
-    """A VI module, and a linear map of Q at one cell."""
-
-    def __init__(self, settings: Vin) -> None:
-        """Draw the weights."""
-        super().__init__()
-        self.planner = settings.planner()
-        self.output = nn.Linear(ACTIONS, ACTIONS, bias=False)
-
-    def blank(self, batch: tuple[int, ...]) -> tuple[()]:
-        """Nothing is remembered, whatever the batch."""
-        del batch
-        return ()
-
-    def forward(self, inputs: Inputs, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
-        """One step."""
-        return cast(Tensor, self.output(self.plan(inputs))), state
-
-    def plan(self, inputs: Inputs) -> Tensor:
-        """Q at the agent's cell: [B, 4]."""
-        q, _ = self.planner(inputs.image)
-        return inputs.here(q)
+    def shapes(self) -> Shapes:
+        """Those of a VI module, and of a linear map of Q at one cell."""
+        return parts(planner=planner_shapes(CHANNELS), output={"weight": (len(OUTPUTS), ACTIONS)})

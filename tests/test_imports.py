@@ -12,6 +12,7 @@ import pytest
 
 import fogbench
 from fogbench import learned, planners
+from fogbench.bench.shipped import folder
 from fogbench.learned import LEARNED
 from fogbench.planners import JUDGES, PLANNERS
 from fogbench.worlds import FAMILIES, KINDS
@@ -101,6 +102,19 @@ def test_a_check_loads_no_tables_and_no_plots() -> None:
     found = loaded(told("check", "goal_distance"))
     assert {"numba", "fogbench.planners.rrt_star"} <= found
     assert not {"pandas", "matplotlib", "scipy.stats", "scipy.sparse", "pebble", "sklearn", "torch"} & found
+
+
+def test_reading_a_scenario_loads_no_torch() -> None:
+    """Settings of all networks are read, and their weights held against them, before anything can play."""
+    code = (
+        "from pathlib import Path\n"
+        "from fogbench.bench.reading.scenario import read_scenario, text_of\n"
+        f"place = Path({str(folder() / 'paper' / 'grid.yaml')!r})\n"
+        "agents = read_scenario(text_of(place), place).variants[0].agents\n"
+        "assert {'macn', 'vin'} <= {agent.target.rpartition('.')[2].partition(':')[0] for agent in agents}\n"
+        "assert all(agent.settings for agent in agents)"
+    )
+    assert "torch" not in loaded(code)
 
 
 def test_tables_load_none_of_their_entries() -> None:

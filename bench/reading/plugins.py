@@ -5,13 +5,13 @@ Nothing is imported before a scenario names it.
 
 import sys
 from importlib import import_module
-from importlib.util import module_from_spec, spec_from_file_location
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
 from fogbench.bench.reading.blocks import raised
-from fogbench.bench.reading.tables import EXTRAS, Table
+from fogbench.bench.reading.tables import EXTRAS, PACKAGES, Table
 from fogbench.worlds import KINDS, Kind
 from fogbench.worlds.mistake import Unavailable, near, one_of
 from fogbench.worlds.settings import Settings
@@ -57,6 +57,8 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
         PluginError: there is none, it cannot be imported, or it is not a class of settings for this.
         Unavailable: it needs a package that is not installed; the text says which, and how to get it.
     """
+    if absent := [package for package in PACKAGES.get(EXTRAS.get(name, ""), ()) if not _is_installed(package)]:
+        raise Unavailable(_how_to_get(name, absent[0]))
     found = _thing(name, target, type, "class")
     lacks = [member for member in table.members if not hasattr(found, member)]
     if not issubclass(found, Settings):
@@ -107,6 +109,14 @@ def _import(name: str, place: str) -> ModuleType:
         raise PluginError(f"an existing file (looked for {place})") from None
     except (Exception, SystemExit) as error:  # noqa: BLE001  a user's file may raise anything
         raise PluginError(_importable(error)) from None
+
+
+def _is_installed(package: str) -> bool:
+    """Whether a package can be found; it is not imported."""
+    try:
+        return find_spec(package) is not None
+    except ValueError:  # somebody has put something else in its place
+        return False
 
 
 def _importable(error: BaseException) -> str:

@@ -27,7 +27,8 @@ def schema() -> Schema:
     """
     known, read = Page.model_fields, _blocks()
     fields: dict[str, Any] = {key: (field.annotation, field) for key, field in known.items()} | read
-    fields["kind"] = (Literal.__getitem__(tuple(KIND.targets())) | None, known["kind"])
+    kinds: Any = Literal.__getitem__(tuple(KIND.targets()))
+    fields["kind"] = (kinds | None, known["kind"])
     fields["maps"] = (_one_of_many("Maps", _classes(FAMILY)), known["maps"])
     fields["agents"] = (_agents(), known["agents"])
     varied = (*VARIED, *read)

@@ -33,11 +33,14 @@ AGENT = Table(
     ("fogbench.planners", "fogbench.learned"),
     ("kinds", "start", "parameter_bytes"),
 )
-NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "frame"))
+NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "encoding"))
 KIND = Table({name: kind.conditions for name, kind in KINDS.items()}, ("fogbench.kinds",), ("covariates",))
 
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS, **{name: kind.extra for name, kind in KINDS.items() if kind.extra}}
 """The extra of the project that an agent or a kind of world needs."""
+
+PACKAGES = learned.PACKAGES
+"""Packages of an extra that an agent needs even though its settings can be imported without them."""
 
 
 def families() -> dict[str, str]:

@@ -18,8 +18,9 @@ from torch import Tensor
 from fogbench.bench.reading.plugins import load
 from fogbench.bench.reading.tables import AGENT
 from fogbench.learned import LEARNED
+from fogbench.learned.agent import PolicyAgent, weighted
 from fogbench.learned.macn import Macn
-from fogbench.learned.policy import Policy, PolicyAgent, weighted
+from fogbench.learned.policy import Policy
 from fogbench.learned.value_iteration import value_iteration as vi
 from fogbench.worlds.conditions import BudgetSettings, Tasks
 from fogbench.worlds.grid.conditions import GridConditions

@@ -1,169 +1,119 @@
-"""From what an agent knows to what a network sees; one implementation for single decisions and for batches.
-
-Words used here
-    B      samples
-    cells  [B, h, w] uint8 of UNKNOWN, FREE, BLOCKED: views, or known maps, with their top left cells at `corners`
-    image  [B, 3, H, W] what the VI module plans on: known to be free, known to be blocked, the goal
-    sight  [B, 3, S, S] the same of the cells around the agent, S = 2 * SIGHT + 1
-    compass  [B, COMPASS] where the goal is, and what the last move did
-
-An image is a window around the agent, or the whole map (`Frame`). A goal outside it is moved to its nearest cell.
-"""
+"""What a network sees of a grid: what is kept of an episode, how it becomes tensors, and what its outputs mean."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Protocol
 
 import numpy as np
-import torch
-from torch import Tensor
 
-from fogbench.worlds.kernel import kernel
-from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Observation
+from fogbench.learned.encoding.grid_inputs import STILL, Inputs, Known, encode
+from fogbench.learned.encoding.grid_sizes import OUTPUTS, SIGHT, Frame, by
+from fogbench.worlds.maps.cells import KnownMap
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell, Move, Observation, Task
 
-CHANNELS = 3
-"""Of an image: free, blocked, goal; a cell that is neither free nor blocked is unknown."""
-
-SIGHT = 3
-"""Cells to each side that a controller sees as they are: the paper's 7x7; with a smaller sensor the rest is unknown."""
-
-SEEN = CHANNELS * (2 * SIGHT + 1) ** 2
-"""Numbers of a sight."""
-
-COMPASS = 12
-"""Numbers of a compass: sign, logarithm and clamped size of both offsets to the goal; last move, one of 5; blocked."""
-
-HORIZON = 64
-"""Cells; how much farther off a goal lies is not told, so that no number grows with the map beyond all that a network
-learned from (as relative positions are clipped in Shaw et al. 2018, section 3.2)."""
-
-STILL = 4
-"""In the place of the last move before the first."""
+BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
 
 
-class Known(NamedTuple):
-    """What some agents know at one step, as arrays."""
+class Shown(Protocol):
+    """What the settings of a policy say of what it is shown; see `fogbench.learned.grid_policy.GridPolicy`."""
 
-    cells: Array
-    """[B, h, w] uint8."""
-    corners: Array
-    """[B, 2] int64, row and column on the map of the first of `cells`."""
-    places: Array
-    """[B, 2] int64, the agents' cells."""
-    goals: Array
-    """[B, 2] int64."""
-    moves: Array
-    """[B] int64, the last move, STILL before the first."""
-    blocked: Array
-    """[B] bool, whether an obstacle stopped it."""
+    @property
+    def frame(self) -> Frame:
+        """What the image shows of the world."""
+
+    @property
+    def stitched(self) -> bool:
+        """Whether the map known so far is shown; else, the current view alone."""
 
 
-class Inputs(NamedTuple):
-    """What a network sees, for a batch."""
+class GridViewpoint:
+    """What is kept of an episode: the last look, the last move and, if it is shown, the map known so far."""
 
-    image: Tensor
-    """[B, 3, H, W] float32."""
-    cells: Tensor
-    """[B] int64, where the agents are in the image: row * W + column."""
-    sight: Tensor
-    """[B, 3, S, S] float32."""
-    compass: Tensor
-    """[B, COMPASS] float32."""
+    observation: Observation
+    """Of the last look."""
 
-    def to(self, device: str) -> "Inputs":
-        """The same on a device."""
-        return self if self.image.device.type == device else Inputs(*(part.to(device) for part in self))
+    def __init__(self, task: Task, stitched: bool) -> None:
+        """Nothing is seen yet."""
+        self.goal: Cell = task.goal
+        self.known = KnownMap(task.extent) if stitched else None
+        self.move = STILL
 
-    def here(self, maps: Tensor) -> Tensor:
-        """What maps [B, C, H, W] say at the agents' cells: [B, C]."""
-        cells = self.cells[:, None, None].expand(-1, maps.shape[1], 1)  # [B, C, 1]
-        return maps.flatten(2).gather(2, cells)[..., 0]
+    def see(self, observation: Observation) -> None:
+        """Look."""
+        self.observation = observation
+        if self.known:
+            self.known.update(observation)
 
+    def act(self, output: int) -> Move:
+        """Remember a move."""
+        self.move = output
+        return Move(output)
 
-class Frame(NamedTuple):
-    """Which part of the world an image shows."""
-
-    shape: tuple[int, int]
-    """Rows and columns of the image."""
-    centred: bool
-    """Whether the agent is in its middle (`window`); else it is the whole map, from its first cell on (`map`)."""
+    @property
+    def bytes(self) -> int:
+        """The known map."""
+        return self.known.cells.nbytes if self.known else 0
 
 
-def gather(
-    observations: Sequence[Observation], goals: Sequence[Cell], moves: Sequence[int], maps: Sequence[Array] | None
-) -> Known:
-    """What some agents know.
+class GridEncoding:
+    """The image that is planned on, the cells around the agent, and its compass; the outputs are the four moves."""
 
-    Args:
-        observations: what each is told.
-        goals: of each.
-        moves: the last of each, STILL before the first.
-        maps: [H, W] the known map of each, of any size; None: they see their current views alone.
-    """
+    outputs = OUTPUTS
+
+    def __init__(self, settings: Shown) -> None:
+        """Show what the settings say."""
+        self.frame = settings.frame
+        self.stitched = settings.stitched
+
+    def start(self, task: Task) -> GridViewpoint:
+        """A viewpoint from which nothing was seen.
+
+        Raises:
+            Mistake: a network that was made for maps of one size meets another.
+        """
+        if not self.frame.fits(task.extent):
+            raise Mistake(f"got a map of {by(task.extent)}; expected {by(self.frame.shape)}, the size")
+        return GridViewpoint(task, self.stitched)
+
+    def encode(self, viewpoints: Sequence[GridViewpoint]) -> Inputs:
+        """What a network sees from some viewpoints."""
+        return encode(gather(viewpoints), self.frame)
+
+    def open(self, inputs: Inputs) -> Array:
+        """[B, 4] bool, the moves that are not seen to run into an obstacle."""
+        beside = inputs.sight[:, BLOCKED - FREE, BESIDE[:, 0], BESIDE[:, 1]]
+        is_open: Array = (beside == 0).numpy()
+        return is_open
+
+
+def gather(viewpoints: Sequence[GridViewpoint]) -> Known:
+    """What is known from some viewpoints of one encoding, on maps of any sizes, with views of any sizes."""
+    observations = [viewpoint.observation for viewpoint in viewpoints]
     places = np.array([observation.place for observation in observations], np.int64)  # [B, 2]
-    blocked = np.array([observation.blocked for observation in observations])  # [B]
-    if maps is None:
-        side = max(len(observation.view) for observation in observations)
-        cells = np.full((len(places), side, side), UNKNOWN, np.uint8)  # [B, K, K], K of the widest view
-        for b, observation in enumerate(observations):
-            rim = (side - len(observation.view)) // 2
-            cells[b, rim : side - rim, rim : side - rim] = observation.view
-        corners = places - cells.shape[1] // 2
-    else:
-        height, width = np.max([known.shape for known in maps], 0)
-        cells = np.full((len(maps), height + 2, width + 2), UNKNOWN, np.uint8)
-        for b, known in enumerate(maps):
-            rows, columns = known.shape
-            cells[b, : rows + 2, : columns + 2] = BLOCKED  # beyond the map, as in a view
-            cells[b, 1 : rows + 1, 1 : columns + 1] = known
-        corners = np.full_like(places, -1)
-    return Known(cells, corners, places, np.array(goals, np.int64), np.array(moves, np.int64), blocked)
+    maps = [viewpoint.known.cells for viewpoint in viewpoints if viewpoint.known]
+    cells, corners = _maps(maps) if maps else _views([observation.view for observation in observations], places)
+    goals = np.array([viewpoint.goal for viewpoint in viewpoints], np.int64)
+    moves = np.array([viewpoint.move for viewpoint in viewpoints], np.int64)
+    blocked = np.array([observation.blocked for observation in observations])
+    return Known(cells, corners, places, goals, moves, blocked)
 
 
-def encode(known: Known, frame: Frame) -> Inputs:
-    """What a network sees of what some agents know."""
-    batch, side = len(known.places), 2 * SIGHT + 1
-    middle = np.array(frame.shape, np.int64) // 2
-    origins = known.places - middle if frame.centred else np.zeros_like(known.places)  # [B, 2]
-    image = np.zeros((batch, CHANNELS, *frame.shape), np.float32)
-    sight = np.zeros((batch, CHANNELS, side, side), np.float32)
-    compass = np.zeros((batch, COMPASS), np.float32)
-    draw(known.cells, known.corners, known.places, known.goals, origins, image)
-    draw(known.cells, known.corners, known.places, known.goals, known.places - SIGHT, sight)
-    point(known.places, known.goals, known.moves, known.blocked, compass)
-    cells = (known.places - origins) @ (frame.shape[1], 1)  # [B]
-    return Inputs(*map(torch.from_numpy, (image, cells, sight, compass)))
+def _views(views: Sequence[Array], places: Array) -> tuple[Array, Array]:
+    """Cells [B, K, K], K of the widest view, and corners [B, 2] of views around `places` [B, 2]."""
+    side = max(map(len, views))
+    cells = np.full((len(views), side, side), UNKNOWN, np.uint8)
+    for b, view in enumerate(views):
+        rim = (side - len(view)) // 2
+        cells[b, rim : side - rim, rim : side - rim] = view
+    return cells, places - side // 2
 
 
-@kernel
-def draw(cells: Array, corners: Array, places: Array, goals: Array, origins: Array, image: Array) -> None:
-    """Draw what is known, and the goal, into images of zeros whose first cells are at `origins` [B, 2] on the map.
-
-    The agent's own cell is free, whatever the sensor says of it, as in the known map.
-    """
-    height, width = image.shape[2:]
-    for b in range(len(image)):
-        top, left = corners[b, 0] - origins[b, 0], corners[b, 1] - origins[b, 1]
-        for r in range(max(0, -top), min(cells.shape[1], height - top)):
-            for c in range(max(0, -left), min(cells.shape[2], width - left)):
-                reading = cells[b, r, c]
-                if reading != UNKNOWN:
-                    image[b, reading - FREE, top + r, left + c] = 1
-        row, column = places[b, 0] - origins[b, 0], places[b, 1] - origins[b, 1]
-        image[b, 0, row, column] = 1
-        image[b, BLOCKED - FREE, row, column] = 0
-        row = min(max(goals[b, 0] - origins[b, 0], 0), height - 1)
-        column = min(max(goals[b, 1] - origins[b, 1], 0), width - 1)
-        image[b, 2, row, column] = 1
-
-
-@kernel
-def point(places: Array, goals: Array, moves: Array, blocked: Array, compass: Array) -> None:
-    """Fill compasses of zeros."""
-    for b in range(len(compass)):
-        for axis in range(2):
-            offset = goals[b, axis] - places[b, axis]
-            compass[b, axis] = np.sign(offset)
-            compass[b, 2 + axis] = np.log1p(min(abs(offset), HORIZON))
-            compass[b, 4 + axis] = min(max(offset, -SIGHT), SIGHT) / SIGHT
-        compass[b, 6 + moves[b]] = 1
-        compass[b, 11] = blocked[b]
+def _maps(maps: Sequence[Array]) -> tuple[Array, Array]:
+    """Cells [B, H + 2, W + 2], of the highest and the widest map, and corners [B, 2] of known maps [h, w]."""
+    height, width = np.max([known.shape for known in maps], 0)
+    cells = np.full((len(maps), height + 2, width + 2), UNKNOWN, np.uint8)
+    for b, known in enumerate(maps):
+        rows, columns = known.shape
+        cells[b, : rows + 2, : columns + 2] = BLOCKED  # beyond the map, as in a view
+        cells[b, 1 : rows + 1, 1 : columns + 1] = known
+    return cells, np.full((len(maps), 2), -1, np.int64)

@@ -16,8 +16,9 @@ from typing import Any, NamedTuple
 import torch
 
 from fogbench.learned import checkpoint
-from fogbench.learned.training.imitation import Student, rehearse, validate
+from fogbench.learned.training.imitation import Student
 from fogbench.learned.training.recipe import Recipe
+from fogbench.learned.training.trials import rehearse, validate
 from fogbench.worlds.files import put
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.streams import digest
@@ -108,8 +109,9 @@ class Course:
             "threads": torch.get_num_threads(),
             **self.origin,
         }
-        network, weights = type(self.recipe.network).__name__, self.student.network.state_dict()
-        checkpoint.write(self.weights, network, self.recipe.network.trained(), weights, training)
+        settings, state = self.recipe.network, self.student.network.state_dict()
+        weights = {name: tensor.cpu() for name, tensor in state.items()}
+        checkpoint.write(self.weights, type(settings).__name__, settings.trained(), weights, training)
 
     @property
     def weights(self) -> Path:

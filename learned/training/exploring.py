@@ -6,8 +6,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import Inputs
-from fogbench.learned.network import Network
+from fogbench.learned.networks.network import Network
 from fogbench.learned.training.rollout import Moment
 from fogbench.worlds.types import Array
 
@@ -24,13 +23,13 @@ class Explorer:
         self.led = luck.random(episodes) < share
 
     def __call__(self, moment: Moment) -> Array:
-        """The moves [b]; the teacher takes any of the optimal ones."""
+        """The outputs [b]; the teacher takes any of the right ones."""
         chances = self.luck.random((2, len(self.led)))[:, moment.episodes]  # [2, b]
         own = pick(np.exp(moment.scores - moment.scores.max(1, keepdims=True)), chances[0])
         blocked = ~np.take_along_axis(moment.open, own[:, None], 1)[:, 0]
-        led = (self.led[moment.episodes] | blocked) & moment.optimal.any(1)
-        moves: Array = np.where(led, pick(moment.optimal, chances[1]), own)
-        return moves
+        led = (self.led[moment.episodes] | blocked) & moment.targets.any(1)
+        outputs: Array = np.where(led, pick(moment.targets, chances[1]), own)
+        return outputs
 
 
 class Noisy(Network):
@@ -47,7 +46,7 @@ class Noisy(Network):
         """The network's."""
         return self.network.blank(batch)
 
-    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
+    def forward(self, inputs: Any, state: Any) -> tuple[Tensor, Any]:
         """One step."""
         scores, state = self.network(inputs, state)
         if hasattr(state, "hidden"):
@@ -57,7 +56,7 @@ class Noisy(Network):
 
 
 def pick(weights: Array, chances: Array) -> Array:
-    """For each row of `weights` [b, 4] a column, as likely as it weighs; `chances` [b] are uniform in [0, 1)."""
-    sums = weights.cumsum(1)  # [b, 4]
+    """For each row of `weights` [b, A] a column, as likely as it weighs; `chances` [b] are uniform in [0, 1)."""
+    sums = weights.cumsum(1)  # [b, A]
     columns: Array = (sums > chances[:, None] * sums[:, -1:]).argmax(1)
     return columns

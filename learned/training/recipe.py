@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
 
-from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.settings import Positive, Probability, Settings
 from fogbench.worlds.types import MapFamily
 
@@ -80,7 +79,8 @@ class Worlds(NamedTuple):
     """Where episodes take place."""
 
     family: MapFamily
-    conditions: GridConditions
+    conditions: Any
+    """Of the class that their kind of world names."""
 
 
 class Lesson(NamedTuple):

@@ -1,11 +1,12 @@
 """Episodes side by side: each in a world of its own, with one network for all of them.
 
-Worlds, known maps and what a network sees are those of single episodes. A rollout keeps the way back to the weights,
+Worlds, teachers and what a network sees are those of single episodes. A rollout keeps the way back to the weights,
 unless PyTorch is told not to, so that what was played is learned from as it is.
 
 Words used here
     B   episodes;  b  those of them that go on
     n   decisions of all episodes, step by step
+    A   outputs of the network
 """
 
 from collections.abc import Sequence
@@ -15,14 +16,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import SIGHT, STILL, Known, encode, gather
-from fogbench.learned.network import Network, rows
+from fogbench.learned.encoding.encoding import Viewpoint
+from fogbench.learned.networks.network import Network, rows
 from fogbench.learned.policy import Policy
-from fogbench.planners.grid_judge import GridJudge
-from fogbench.worlds.grid.world import GridWorld
-from fogbench.worlds.types import BLOCKED, DELTAS, FREE, Array, Move, Observation
-
-BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
+from fogbench.planners.judging import Teacher
+from fogbench.worlds.types import Array, World
 
 
 class Moment(NamedTuple):
@@ -32,121 +30,98 @@ class Moment(NamedTuple):
     episodes: Array
     """[b] int64, which they are."""
     scores: Array
-    """[b, 4] float32, what the network says of the moves."""
-    optimal: Array
-    """[b, 4] bool, the moves that each episode says are optimal; none where that is undefined."""
+    """[b, A] float32, what the network says of its outputs."""
+    targets: Array
+    """[b, A] bool, the outputs that each teacher says are right; none where that is undefined."""
     open: Array
-    """[b, 4] bool, the moves that are not seen to run into an obstacle."""
+    """[b, A] bool, the outputs that are not seen to run into an obstacle."""
 
 
 class Chooser(Protocol):
     """**Protocol:** what decides by the scores of a network."""
 
     def __call__(self, moment: Moment) -> Array:
-        """The moves [b] int64."""
+        """The outputs [b] int64."""
 
 
 class Rollout(NamedTuple):
     """All decisions of some episodes."""
 
     scores: Tensor
-    """[n, 4]"""
-    optimal: Tensor
-    """[n, 4] bool, the moves that each episode said were optimal; none where that is undefined."""
-    moves: Tensor
+    """[n, A]"""
+    targets: Tensor
+    """[n, A] bool, the outputs that each teacher said were right; none where that is undefined."""
+    outputs: Tensor
     """[n] int64, what was done."""
     reached: Array
     """[B] bool, whether the episode ended at the goal."""
 
     @property
     def judged(self) -> Tensor:
-        """[n] bool, the decisions that have an optimal move."""
-        return self.optimal.any(1)
+        """[n] bool, the decisions of which some were right."""
+        return self.targets.any(1)
 
     def wrong(self) -> Tensor:
-        """[n] bool, the decisions that are judged, and are none of the optimal moves."""
-        right: Tensor = self.optimal.gather(1, self.moves[:, None])[:, 0]
+        """[n] bool, the decisions that are judged, and are not right."""
+        right: Tensor = self.targets.gather(1, self.outputs[:, None])[:, 0]
         return self.judged & ~right
 
 
-def roll(settings: Policy, network: Network, episodes: Sequence["Episode"], choose: Chooser) -> Rollout:
+class Episode:
+    """One world, and who teaches there."""
+
+    def __init__(self, world: World, luck: np.random.Generator, teacher: Teacher) -> None:
+        """Before the first step; `luck` is for the sensor and the slip."""
+        self.world = world
+        self.luck = luck
+        self.teacher = teacher
+        self.state = world.reset()
+        self.steps = 0
+        self.reached = False
+
+    def look(self, viewpoint: Viewpoint) -> Array:
+        """Sense, and let the viewpoint and the teacher see: which outputs are right, [A] bool."""
+        observation = self.world.sense(self.state, self.luck)
+        viewpoint.see(observation)
+        self.teacher.see(observation)
+        targets: Array = self.teacher.targets()
+        return targets
+
+    def step(self, viewpoint: Viewpoint, output: int) -> bool:
+        """Do what an output means; whether the episode goes on."""
+        step = self.world.step(self.state, viewpoint.act(output), self.luck)
+        self.state, self.reached, self.steps = step.state, step.reached, self.steps + 1
+        return not (step.reached or step.collided or self.steps >= self.world.task.budget.steps)
+
+
+def roll(settings: Policy, network: Network, episodes: Sequence[Episode], choose: Chooser) -> Rollout:
     """Play episodes to their ends.
 
     Raises:
-        Mistake: a network that was made for maps of one size meets another.
+        Mistake: the network is not for such worlds.
     """
-    (frame,) = {settings.frame(episode.world.task) for episode in episodes}
+    encoding = settings.encoding()
+    playing = [(episode, encoding.start(episode.world.task)) for episode in episodes]
     live, state = np.arange(len(episodes)), network.blank((len(episodes),))
     decisions: list[tuple[Tensor, Tensor, Tensor]] = []
-    while len(live):
-        playing = [episodes[b] for b in live.tolist()]
-        optimal = np.stack([episode.look() for episode in playing])  # [b, 4]
-        inputs = encode(_known(playing, settings.stitched), frame)
-        beside = inputs.sight[:, BLOCKED - FREE, BESIDE[:, 0], BESIDE[:, 1]].numpy()  # [b, 4]
+    while playing:
+        targets = np.stack([episode.look(viewpoint) for episode, viewpoint in playing])  # [b, A]
+        inputs = encoding.encode([viewpoint for _, viewpoint in playing])
         scores, state = network(inputs.to(settings.device), state)
-        moves = choose(Moment(len(decisions), live, scores.detach().cpu().numpy(), optimal, beside == 0))
-        decisions.append((scores, torch.from_numpy(optimal), torch.from_numpy(moves)))
-        goes_on = np.array([episode.step(move) for episode, move in zip(playing, moves.tolist(), strict=True)])
+        moment = Moment(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
+        outputs = choose(moment)
+        decisions.append((scores, torch.from_numpy(targets), torch.from_numpy(outputs)))
+        steps = zip(playing, outputs.tolist(), strict=True)
+        goes_on = np.array([episode.step(viewpoint, output) for (episode, viewpoint), output in steps])
         if not goes_on.all():
             live, state = live[goes_on], rows(state, torch.from_numpy(goes_on))
-    scores, right, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))  # [n, 4], [n, 4], [n]
+            playing = [pair for pair, stays in zip(playing, goes_on.tolist(), strict=True) if stays]
+    scores, right, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))  # [n, A], [n, A], [n]
     reached = np.array([episode.reached for episode in episodes])
     return Rollout(scores, right.to(scores.device), done.to(scores.device), reached)
 
 
-def _known(episodes: Sequence["Episode"], stitched: bool) -> Known:
-    return gather(
-        [episode.observation for episode in episodes],
-        [episode.world.task.goal for episode in episodes],
-        [episode.move for episode in episodes],
-        [episode.judge.known.cells for episode in episodes] if stitched else None,
-    )
-
-
 def greedy(moment: Moment) -> Array:
-    """The moves of the highest scores; of equals, the first: as a policy decides in an episode."""
+    """The outputs of the highest scores; of equals, the first: as a policy decides in an episode."""
     best: Array = moment.scores.argmax(1)
     return best
-
-
-class Episode:
-    """One world, and what is known of it."""
-
-    observation: Observation
-    """Of the last look."""
-
-    def __init__(self, world: GridWorld, luck: np.random.Generator) -> None:
-        """Before the first step; `luck` is for the sensor and the slip."""
-        self.world = world
-        self.luck = luck
-        self.state = world.reset()
-        self.judge = self.judge_of(world)
-        self.move = STILL
-        self.reached = False
-
-    def look(self) -> Array:
-        """Sense, and write what is seen into the known map: which moves are optimal there, [4] bool."""
-        self.observation = self.world.sense(self.state, self.luck)
-        self.judge.see(self.observation)
-        return self.judge.targets()
-
-    def judge_of(self, world: GridWorld) -> GridJudge:
-        """What says which moves are right."""
-        return GridJudge(world.task)
-
-    def step(self, move: int) -> bool:
-        """Do a move; whether the episode goes on."""
-        step = self.world.step(self.state, Move(move), self.luck)
-        self.state, self.move, self.reached = step.state, move, step.reached
-        return not (step.reached or step.collided or self.state.step >= self.world.task.budget.steps)
-
-
-class Hindsight(Episode):
-    """One world, where of the moves that are optimal by what is known those count that turn out to be, if any does.
-
-    Which of equals turns out better depends on what lies out of sight; over many maps it tells where walls are likely.
-    """
-
-    def judge_of(self, world: GridWorld) -> GridJudge:
-        """One that knows the world."""
-        return GridJudge.hindsight(world)

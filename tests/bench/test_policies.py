@@ -16,7 +16,7 @@ from fogbench.bench.playing.runner import run
 from fogbench.bench.playing.store import read
 from fogbench.bench.reading.scenario import ScenarioError, read_scenario
 from fogbench.learned import checkpoint
-from fogbench.learned.policy import weighted
+from fogbench.learned.agent import weighted
 from fogbench.learned.vin import Vin
 
 SHIPPED = ", ".join(["none", *sorted(card.stem for card in checkpoint.SHIPPED.glob("*.json"))])

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from fogbench.learned import checkpoint
-from fogbench.learned.policy import Policy, weighted
+from fogbench.learned.agent import weighted
+from fogbench.learned.policy import Policy
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.dnc import DNCState
 from fogbench.learned.glimpse import glimpse, held
 from fogbench.learned.macn import Macn
-from fogbench.learned.memory import LSTMState
+from fogbench.learned.networks.memory import LSTMState
 from fogbench.learned.policy import Policy
 from fogbench.learned.vin import Vin
 
@@ -42,7 +42,8 @@ def test_looking_changes_no_decision(policy: Policy, draw: Callable[..., Any]) -
         observation = world.sense(state, rng)
         inputs = alone.perceive(observation)
         seen, move = glimpse(watched, observation), alone.act(observation)
-        assert (seen.move, seen.scores.argmax(), seen.scores.shape) == (move, move, (4,))
+        assert (seen.action, seen.scores.argmax(), seen.scores.shape) == (move, move, (4,))
+        assert seen.outputs == ("down", "right", "up", "left")
         assert np.array_equal(seen.image, inputs.image.flatten())
         assert np.array_equal(seen.planned, alone.network.plan(inputs).flatten())
         for name, numbers in held(alone.state).items():

@@ -25,9 +25,19 @@ def test_weights_have_the_shapes_that_were_said() -> None:
 def test_fresh_weights_are_those_of_pytorch() -> None:
     """The same draws in the same order, with the shapes turned into arguments."""
     torch.manual_seed(0)
-    mine = [linear((5, 3)), convolution((6, 2, 3, 3)), convolution((4, 6, 1, 1), bias=False)]
+    mine = [
+        linear((5, 3)),
+        linear((5, 3), bias=False),
+        convolution((6, 2, 3, 3)),
+        convolution((4, 6, 1, 1), bias=False),
+    ]
     torch.manual_seed(0)
-    theirs = [nn.Linear(3, 5), nn.Conv2d(2, 6, 3, padding=1), nn.Conv2d(6, 4, 1, bias=False)]
+    theirs = [
+        nn.Linear(3, 5),
+        nn.Linear(3, 5, bias=False),
+        nn.Conv2d(2, 6, 3, padding=1),
+        nn.Conv2d(6, 4, 1, bias=False),
+    ]
     for one, other in zip(mine, theirs, strict=True):
         assert repr(one) == repr(other)
         assert all(map(torch.equal, one.parameters(), other.parameters()))

@@ -11,10 +11,11 @@ from torch import Tensor, nn
 
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.encoding.grid import CHANNELS, COMPASS, SIGHT, Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SIGHT
 from fogbench.learned.macn import Macn
-from fogbench.learned.memory import LSTM, FeedForward
-from fogbench.learned.network import settled
+from fogbench.learned.networks.memory import LSTM, FeedForward, remember
+from fogbench.learned.networks.network import settled
 from fogbench.learned.policy import Policy
 from fogbench.learned.value_iteration.value_iteration import ValueIteration, plain
 from fogbench.learned.vin import Vin
@@ -146,7 +147,7 @@ def test_cnn_memory_has_four_convolutions_for_the_vi_module() -> None:
 @pytest.mark.parametrize(("memory", "part"), [("dnc", DNC), ("lstm", LSTM), ("feedforward", FeedForward)])
 def test_memories_go_by_name(memory: str, part: Callable[..., Any]) -> None:
     """Each memory is what its name says, with the sizes of the settings."""
-    made = Macn.model_validate({"checkpoint": "none", "memory": memory, "hidden": 20, "features": 10}).remember()
+    made = remember(Macn.model_validate({"checkpoint": "none", "memory": memory, "hidden": 20, "features": 10}))
     assert type(made) is part
     assert made.step(torch.zeros(2, 10), made.blank((2,)))[0].shape == (2, 4)
 
@@ -154,7 +155,7 @@ def test_memories_go_by_name(memory: str, part: Callable[..., Any]) -> None:
 def test_an_lstm_by_hand() -> None:
     """The state of an LSTM is PyTorch's over the sequence, and the scores a linear map of its output."""
     torch.manual_seed(0)
-    memory, reference = LSTM(5, 7), nn.LSTM(5, 7)
+    memory, reference = LSTM(5, 4, 7), nn.LSTM(5, 7)
     weights = memory.controller.weight.split([5, 7], dim=1), (memory.controller.bias, torch.zeros(4 * 7))
     for name, pair in zip(("weight", "bias"), weights, strict=True):
         for side, tensor in zip(("ih", "hh"), pair, strict=True):

@@ -10,10 +10,11 @@ import pytest
 import torch
 from pydantic import ValidationError
 
+from fogbench.learned.agent import PolicyAgent, load, weighted
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.macn import Macn
-from fogbench.learned.network import Network
-from fogbench.learned.policy import Policy, PolicyAgent, load, weighted
+from fogbench.learned.networks.network import Network
+from fogbench.learned.policy import Policy
 from fogbench.learned.vin import Vin
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Move, Task
@@ -108,7 +109,7 @@ def test_weights_of_another_network(save: Save) -> None:
 
 
 def test_a_card_of_another_version(save: Save) -> None:
-    """Settings that are no more are not passed over."""
+    """Settings that are no more are not passed over; one that the card lacks has its former value."""
     file = Path(save(Macn(checkpoint="none"), "mine"))
     card = json.loads(file.with_suffix(".json").read_text())
     card["settings"]["heads"] = 4
@@ -116,7 +117,8 @@ def test_a_card_of_another_version(save: Save) -> None:
     assert refusal(checkpoint=str(file)) == "a checkpoint of this version (its card has heads)"
     del card["settings"]["heads"], card["settings"]["reads"]
     file.with_suffix(".json").write_text(json.dumps(card))
-    assert refusal(checkpoint=str(file)) == "a checkpoint of this version (its card lacks reads)"
+    assert Macn(checkpoint=str(file)).reads == 4
+    assert refusal(checkpoint=str(file), reads=2) == "reads 4, with which the checkpoint was trained"
     for value, sentence in (("4", "reads: '4'"), (0, "reads: Input should be greater than or equal to 1")):
         card["settings"]["reads"] = value
         file.with_suffix(".json").write_text(json.dumps(card))
@@ -198,7 +200,7 @@ def test_the_highest_score_is_taken(
 ) -> None:
     """Of equals the first; the state and the move are handed on to the next step."""
     network = Scores(scores)
-    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda settings: network)
+    monkeypatch.setattr("fogbench.learned.agent.weighted", lambda settings: network)
     world = draw("#..\n.S.\n..G", radius=2)
     agent = PolicyAgent(POLICIES[0], world.task)
     observation = world.sense(world.reset(), np.random.default_rng())
@@ -213,7 +215,7 @@ def test_the_highest_score_is_taken(
 def test_a_stitched_map_remembers(draw: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
     """Only with `stitched` does a cell stay known when it is out of view."""
     networks = {True: Scores([0, 1, 0, 0]), False: Scores([0, 1, 0, 0])}
-    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda settings: networks[settings.stitched])
+    monkeypatch.setattr("fogbench.learned.agent.weighted", lambda settings: networks[settings.stitched])
     world = draw("S...G")
     for stitched, network in networks.items():
         agent = PolicyAgent(Vin(checkpoint="none", stitched=stitched), world.task)

@@ -1,104 +1,69 @@
-"""What a network sees, against loops over the cells of the whole map."""
+"""What is kept of an episode on a grid, which moves are open, and how several viewpoints are gathered."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-import torch
-from hypothesis import given
-from hypothesis import strategies as st
 
-from fogbench.learned.encoding.grid import COMPASS, SIGHT, STILL, Frame, Known, encode
-from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array
-
-
-def knowledge(seed: int, batch: int, extent: tuple[int, int], side: int) -> Known:
-    """Views of `side` cells, or known maps if it is 0, of some agents on maps of an extent."""
-    rng = np.random.default_rng(seed)
-    places, goals = rng.integers(0, extent, (2, batch, 2))  # [B, 2] each
-    shape = (side, side) if side else extent
-    cells = rng.choice([UNKNOWN, FREE, BLOCKED], (batch, *shape)).astype(np.uint8)
-    corners = places - side // 2 if side else np.zeros_like(places)
-    return Known(cells, corners, places, goals, rng.integers(0, 5, batch), rng.random(batch) < 0.5)
+from fogbench.learned.encoding.grid import GridEncoding, gather
+from fogbench.learned.encoding.grid_inputs import STILL
+from fogbench.learned.vin import Vin
+from fogbench.worlds.grid.world import GridWorld
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import BLOCKED, UNKNOWN, Move
 
 
-def slowly(known: Known, b: int, rows: Any, columns: Any) -> Array:
-    """The image of one sample over the map's rows and columns that are named, cell by cell from the definition."""
-    image = np.zeros((3, len(rows), len(columns)), np.float32)
-    goal = min(max(known.goals[b, 0], rows[0]), rows[-1]), min(max(known.goals[b, 1], columns[0]), columns[-1])
-    for r, row in enumerate(rows):
-        for c, column in enumerate(columns):
-            i, j = row - known.corners[b, 0], column - known.corners[b, 1]
-            inside = 0 <= i < known.cells.shape[1] and 0 <= j < known.cells.shape[2]
-            reading = known.cells[b, i, j] if inside else UNKNOWN
-            if (row, column) == tuple(known.places[b]):
-                reading = FREE
-            image[:, r, c] = reading == FREE, reading == BLOCKED, (row, column) == goal
-    return image
+def seen_from(encoding: GridEncoding, world: GridWorld) -> Any:
+    """A viewpoint after the first look in a world."""
+    viewpoint = encoding.start(world.task)
+    viewpoint.see(world.sense(world.reset(), np.random.default_rng()))
+    return viewpoint
 
 
-@given(st.integers(0, 10**6), st.integers(1, 4), st.sampled_from([0, 1, 3, 7, 11]), st.sampled_from([1, 5, 8, 11]))
-def test_windows_are_the_cells_around(seed: int, batch: int, side: int, size: int) -> None:
-    """A window shows what is known of the cells around the agent; all else is unknown, the goal at its nearest cell."""
-    known = knowledge(seed, batch, (9, 12), side)
-    inputs = encode(known, Frame((size, size + 2), centred=True))
-    for b, (row, column) in enumerate(known.places):
-        top, left = row - size // 2, column - (size + 2) // 2
-        expected = slowly(known, b, range(top, top + size), range(left, left + size + 2))
-        assert np.array_equal(inputs.image[b].numpy(), expected)
-        assert divmod(inputs.cells[b].item(), size + 2) == (size // 2, (size + 2) // 2)
+def test_the_outputs_are_the_moves() -> None:
+    """By name, in the order of `Move`."""
+    assert GridEncoding(Vin(checkpoint="none")).outputs == tuple(move.name.lower() for move in Move)
 
 
-@given(st.integers(0, 10**6), st.integers(1, 4), st.sampled_from([0, 3, 7]))
-def test_maps_are_all_cells(seed: int, batch: int, side: int) -> None:
-    """The whole map shows every cell where it is, and the agent's own place."""
-    known = knowledge(seed, batch, (9, 12), side)
-    inputs = encode(known, Frame((9, 12), centred=False))
-    for b in range(batch):
-        assert np.array_equal(inputs.image[b].numpy(), slowly(known, b, range(9), range(12)))
-        assert divmod(inputs.cells[b].item(), 12) == tuple(known.places[b])
+def test_a_move_is_remembered(draw: Callable[..., GridWorld]) -> None:
+    """Before the first there is none."""
+    viewpoint = GridEncoding(Vin(checkpoint="none")).start(draw("S..\n..G").task)
+    assert viewpoint.move == STILL
+    assert [viewpoint.act(output) for output in range(4)] == list(Move)
+    assert viewpoint.move == Move.LEFT
 
 
-@given(st.integers(0, 10**6), st.sampled_from([0, 3, 7, 11]))
-def test_sight_is_seven_by_seven(seed: int, side: int) -> None:
-    """A sight is the same, whatever the frame; a larger sensor is cut, a smaller one leaves the rest unknown."""
-    known = knowledge(seed, 3, (9, 12), side)
-    window, whole = (encode(known, Frame((9, 12), centred)) for centred in (True, False))
-    assert torch.equal(window.sight, whole.sight)
-    for b, (row, column) in enumerate(known.places):
-        around = [range(middle - SIGHT, middle + SIGHT + 1) for middle in (row, column)]
-        assert np.array_equal(window.sight[b].numpy(), slowly(known, b, *around))
+@pytest.mark.parametrize(("stitched", "carried"), [(True, 6), (False, 0)])
+def test_only_a_stitched_map_is_carried(stitched: bool, carried: int, draw: Callable[..., GridWorld]) -> None:
+    """A byte for each of its cells; it knows what was seen."""
+    viewpoint = seen_from(GridEncoding(Vin(checkpoint="none", stitched=stitched)), draw("S..\n..G", radius=1))
+    assert viewpoint.bytes == carried
+    if stitched:
+        assert (viewpoint.known.cells != UNKNOWN).sum() == 4
 
 
-def test_a_compass_by_hand() -> None:
-    """Sign, logarithm and clamped size of both offsets; the last move; whether an obstacle stopped it."""
-    places, goals = np.array([[4, 4], [0, 9]]), np.array([[6, 0], [0, 9]])
-    cells, corners = np.zeros((2, 3, 3), np.uint8), places - 1
-    known = Known(cells, corners, places, goals, np.array([2, STILL]), np.array([True, False]))
-    compass = encode(known, Frame((5, 5), centred=True)).compass
-    expected = torch.zeros(2, COMPASS)
-    expected[0, :6] = torch.tensor([1, -1, np.log(3), np.log(5), 2 / 3, -1])
-    expected[0, [6 + 2, 11]] = 1
-    expected[1, 6 + STILL] = 1
-    assert torch.allclose(compass, expected)
+def test_moves_into_an_obstacle_in_view_are_not_open(draw: Callable[..., GridWorld]) -> None:
+    """Nor are those off the map; what is not seen counts as open."""
+    encoding = GridEncoding(Vin(checkpoint="none"))
+    viewpoints = [seen_from(encoding, draw(text, radius=1)) for text in ("S#G\n...", "...\n.S.\n.#G")]
+    opened = encoding.open(encoding.encode(viewpoints))
+    assert opened.tolist() == [[True, False, False, False], [False, True, True, True]]
 
 
-@pytest.mark.parametrize("far", [65, 10_000])
-def test_beyond_the_horizon_all_goals_look_alike(far: int) -> None:
-    """A goal 64 cells off and one farther off in the same direction give the same inputs, one nearer does not."""
-    goals = np.array([[63, 0], [64, 0], [far, 0]])
-    places, cells = np.zeros((3, 2), np.int64), np.zeros((3, 3, 3), np.uint8)
-    known = Known(cells, places - 1, places, goals, np.full(3, STILL), np.zeros(3, np.bool_))
-    image, _, sight, compass = encode(known, Frame((5, 5), centred=True))
-    assert all(torch.equal(told[1], told[2]) for told in (image, sight, compass))
-    assert not torch.equal(compass[0], compass[1])
+def test_views_and_maps_of_several_sizes_lie_side_by_side(draw: Callable[..., GridWorld]) -> None:
+    """A smaller view lies in the middle of unknown cells; around a smaller map is a wall, and nothing beyond."""
+    worlds = [draw("S.G", radius=1), draw("S...\n...G", radius=2)]
+    views = gather([seen_from(GridEncoding(Vin(checkpoint="none")), world) for world in worlds])
+    assert (views.cells.shape, views.corners.tolist()) == ((2, 5, 5), [[-2, -2], [-2, -2]])
+    assert (views.cells[0, [0, -1]] == UNKNOWN).all()
+    maps = gather([seen_from(GridEncoding(Vin(checkpoint="none", stitched=True)), world) for world in worlds])
+    assert (maps.cells.shape, maps.corners.tolist()) == ((2, 4, 6), [[-1, -1], [-1, -1]])
+    assert (maps.cells[0, 2, :5] == BLOCKED).all()
+    assert (maps.cells[0, 3] == UNKNOWN).all()
 
 
-@given(st.integers(0, 10**6), st.sampled_from([0, 7]), st.booleans())
-def test_a_batch_is_its_samples(seed: int, side: int, centred: bool) -> None:
-    """Each sample of a batch is encoded as it would be alone."""
-    known = knowledge(seed, 5, (9, 12), side)
-    together = encode(known, Frame((9, 12), centred))
-    for b in range(5):
-        alone = encode(Known(*(part[b : b + 1] for part in known)), Frame((9, 12), centred))
-        assert all(torch.equal(a[0], t[b]) for a, t in zip(alone, together, strict=True))
+def test_a_network_for_maps_of_one_size_meets_no_other(draw: Callable[..., GridWorld]) -> None:
+    """Nothing is kept of such an episode."""
+    with pytest.raises(Mistake, match=r"^got a map of 2x3; expected 4x4, the size$"):
+        GridEncoding(Vin(checkpoint="none", reading="map", size=(4, 4))).start(draw("S..\n..G").task)

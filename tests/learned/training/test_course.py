@@ -15,8 +15,9 @@ import torch
 from fogbench import learned
 from fogbench.bench.reading.recipe import read_recipe
 from fogbench.bench.reading.scenario import read_scenario
-from fogbench.learned import training
-from fogbench.learned.policy import Policy, weighted
+from fogbench.learned.agent import weighted
+from fogbench.learned.policy import Policy
+from fogbench.learned.training import course as training
 from fogbench.learned.training.course import Course
 from fogbench.learned.training.recipe import Recipe
 from fogbench.worlds.mistake import Mistake

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,22 +11,16 @@ import torch
 
 from fogbench.bench.playing.loop import episode_world
 from fogbench.bench.reading.scenario import read_scenario
-from fogbench.learned.encoding.grid import Inputs
+from fogbench.learned.agent import weighted
+from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.macn import Macn
-from fogbench.learned.policy import weighted
 from fogbench.learned.training.exploring import Explorer, Noisy, pick
-from fogbench.learned.training.imitation import (
-    Student,
-    access_weight,
-    draw_world,
-    imitation_loss,
-    part,
-    rate,
-    rehearse,
-)
-from fogbench.learned.training.imitation import validate as tried
+from fogbench.learned.training.imitation import Student, access_weight, imitation_loss, part, rate
 from fogbench.learned.training.recipe import Curriculum, Lesson, Recipe, Teacher, Training, Validation, Worlds
-from fogbench.learned.training.rollout import Episode, Hindsight, Moment, Rollout, roll
+from fogbench.learned.training.rollout import Episode, Moment, Rollout, roll
+from fogbench.learned.training.trials import draw_world, rehearse
+from fogbench.learned.training.trials import validate as tried
+from fogbench.planners.grid_judge import GridJudge, Hindsight
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.movingai import MovingAI
 from fogbench.worlds.mistake import Mistake
@@ -99,7 +93,7 @@ def test_where_the_network_would_collide_the_teacher_decides() -> None:
     """A move into an obstacle in view is replaced by an optimal one; where there is none, it stays."""
     blocked = moment(1000, [-50, -50, 0, 0], [True, False, False, False], [True, True, False, True])
     assert moves_of(0, blocked) == pytest.approx([0.5, 0, 0, 0.5], abs=0.05)
-    assert moves_of(0, blocked._replace(optimal=np.zeros((1000, 4), np.bool_)))[2] == pytest.approx(0.5, abs=0.05)
+    assert moves_of(0, blocked._replace(targets=np.zeros((1000, 4), np.bool_)))[2] == pytest.approx(0.5, abs=0.05)
 
 
 def test_choices_do_not_depend_on_who_has_ended() -> None:
@@ -161,7 +155,7 @@ def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> No
     ((worlds, _),) = recipe().lessons
     purposes = "training", "validation", "training"
     drawn = [[draw_world(worlds, MAPS, purpose, 0, number) for number in range(5)] for purpose in purposes]
-    maps = [[world.blocked for world, _ in pairs] for pairs in drawn]
+    maps = [[cast(Any, world).blocked for world, _ in pairs] for pairs in drawn]
     assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
     chances = [[luck.random() for _, luck in pairs] for pairs in drawn]
@@ -177,7 +171,7 @@ def test_a_test_meets_other_maps_than_a_training() -> None:
     for purpose in ("training", "validation"):
         for number in range(20):
             world, _ = draw_world(worlds, worlds.family, purpose, 0, number)
-            assert world.blocked.tobytes() not in tested
+            assert cast(Any, world).blocked.tobytes() not in tested
 
 
 def test_all_seeds_are_tried_on_the_same_maps(recipe: Callable[..., Recipe]) -> None:
@@ -211,15 +205,16 @@ def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], mon
     kinds = list[set[type]]()
 
     def spy(*arguments: Any) -> Rollout:
-        kinds.append({type(episode) for episode in arguments[2]})
+        kinds.append({type(episode.teacher) for episode in arguments[2]})
         return roll(*arguments)
 
     monkeypatch.setattr("fogbench.learned.training.imitation.roll", spy)
+    monkeypatch.setattr("fogbench.learned.training.trials.roll", spy)
     for hindsight in (False, True):
         taught = recipe(batches=1, teacher=Teacher(hindsight=hindsight))
         Student(taught).learn()
         tried(taught, SMALL.network())
-    assert kinds == [{Episode}, {Episode}, {Hindsight}, {Episode}]
+    assert kinds == [{GridJudge}, {GridJudge}, {Hindsight}, {GridJudge}]
 
 
 @pytest.mark.parametrize(("name", "kind"), [("adam", torch.optim.Adam), ("rmsprop", torch.optim.RMSprop)])
@@ -295,7 +290,7 @@ def test_a_curriculum_is_played_from_its_beginning(
     student, walls = Student(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
 
     def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
-        walls.append(float(np.mean([episode.world.blocked.mean() for episode in episodes])))
+        walls.append(float(np.mean([cast(Any, episode.world).blocked.mean() for episode in episodes])))
         return roll(settings, network, episodes, choose)
 
     monkeypatch.setattr("fogbench.learned.training.imitation.roll", rolled)
@@ -316,9 +311,9 @@ def test_lessons_take_turns(
 
     def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
         rollout = roll(settings, network, episodes, choose)
-        sizes.extend(len(episode.world.blocked) for episode in episodes)
+        sizes.extend(len(cast(Any, episode.world).blocked) for episode in episodes)
         budgets.extend(episode.world.task.budget.steps for episode in episodes)
-        sides.extend(len(episode.observation.view) for episode in episodes)
+        sides.extend(len(cast(Any, episode.teacher).observation.view) for episode in episodes)
         return rollout
 
     monkeypatch.setattr("fogbench.learned.training.imitation.roll", rolled)

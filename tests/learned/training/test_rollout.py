@@ -10,10 +10,12 @@ import torch
 
 from fogbench.bench.playing import loop
 from fogbench.bench.playing.judge import GridJudge
+from fogbench.learned.agent import PolicyAgent, load, weighted
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.macn import Macn
-from fogbench.learned.policy import Policy, PolicyAgent, load, weighted
-from fogbench.learned.training.rollout import Episode, Hindsight, Moment, Rollout, greedy, roll
+from fogbench.learned.policy import Policy
+from fogbench.learned.training.rollout import Episode, Moment, Rollout, greedy, roll
+from fogbench.learned.training.trials import teacher_in
 from fogbench.learned.vin import Vin
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.families.blobs import Blobs
@@ -57,9 +59,9 @@ class Spy:
     def __call__(self, moment: Moment) -> Array:
         """Random moves."""
         moves = self.luck.integers(4, size=len(moment.episodes))
-        for b, optimal, move in zip(moment.episodes.tolist(), moment.optimal, moves.tolist(), strict=True):
-            episode = self.episodes[b]
-            self.seen[b].append(Seen(episode.observation, episode.known.cells.copy(), optimal, move))
+        for b, optimal, move in zip(moment.episodes.tolist(), moment.targets, moves.tolist(), strict=True):
+            teacher: Any = self.episodes[b].teacher
+            self.seen[b].append(Seen(teacher.observation, teacher.known.cells.copy(), optimal, move))
         return moves
 
 
@@ -101,28 +103,35 @@ def luck(number: int) -> np.random.Generator:
     return np.random.default_rng(100 + number)
 
 
-def played(policy: Policy, worlds: list[GridWorld], kind: type[Episode] = Episode) -> tuple[Rollout, list[list[Seen]]]:
+def episodes_in(worlds: list[GridWorld], *, hindsight: bool = False) -> list[Episode]:
+    """An episode in each world."""
+    return [Episode(world, luck(k), teacher_in(world, hindsight=hindsight)) for k, world in enumerate(worlds)]
+
+
+def played(policy: Policy, worlds: list[GridWorld], *, hindsight: bool = False) -> tuple[Rollout, list[list[Seen]]]:
     """A rollout of some worlds at random."""
-    spy = Spy([kind(world, luck(k)) for k, world in enumerate(worlds)])
+    spy = Spy(episodes_in(worlds, hindsight=hindsight))
     return roll(policy, weighted(policy), spy.episodes, spy), spy.seen
 
 
-def first_look(kind: type[Episode], world: GridWorld) -> list[str]:
+def first_look(world: GridWorld, *, hindsight: bool) -> list[str]:
     """The moves that count at the start."""
-    return [Move(move).name for move in np.flatnonzero(kind(world, luck(0)).look())]
+    (episode,) = episodes_in([world], hindsight=hindsight)
+    targets = episode.look(POLICIES[0].encoding().start(world.task))
+    return [Move(move).name for move in np.flatnonzero(targets)]
 
 
 def test_hindsight_takes_the_better_of_equals(draw: Callable[..., GridWorld]) -> None:
     """Down and right look alike with a view of one cell; but below everything is closed, out of sight."""
     world = draw("S.... ..#.. ##... ..... ....G", radius=1)
-    assert first_look(Episode, world) == ["DOWN", "RIGHT"]
-    assert first_look(Hindsight, world) == ["RIGHT"]
+    assert first_look(world, hindsight=False) == ["DOWN", "RIGHT"]
+    assert first_look(world, hindsight=True) == ["RIGHT"]
 
 
 def test_hindsight_asks_for_nothing_that_cannot_be_known(draw: Callable[..., GridWorld]) -> None:
     """Where what looks best turns out to be a dead end, it is taught all the same."""
     world = draw("..... .#... S.#.G .#... .....", radius=1)
-    assert first_look(Episode, world) == first_look(Hindsight, world) == ["RIGHT"]
+    assert first_look(world, hindsight=False) == first_look(world, hindsight=True) == ["RIGHT"]
 
 
 @pytest.mark.parametrize("rules", RULES, ids=["exact", "noisy", "occluded"])
@@ -130,7 +139,7 @@ def test_hindsight_is_what_both_maps_agree_on(conditions: Callable[..., Any], ru
     """Along random walks, against networkx on the full map; some decisions are narrowed, the others as they were."""
     family = Blobs(size=16, obstacles=(15, 30), obstacle_size=(1, 4))
     worlds = [family.sample(np.random.default_rng(k), 0, conditions(steps=30, **rules)) for k in range(12)]
-    (_, known), (_, seen) = (played(POLICIES[2], worlds, kind) for kind in (Episode, Hindsight))  # the same walks
+    (_, known), (_, seen) = (played(POLICIES[2], worlds, hindsight=late) for late in (False, True))  # the same walks
     narrowed = 0
     for world, before, after in zip(worlds, known, seen, strict=True):
         graph = nx.grid_2d_graph(*world.blocked.shape)
@@ -164,7 +173,7 @@ def test_a_batch_is_its_single_episodes(conditions: Callable[..., Any], rules: d
         assert clerk.wrong == sum(each.optimal.any() and not each.optimal[each.move] for each in seen[k])
         assert rollout.reached[k] == (outcome is Outcome.REACHED)
         judged, wrong, steps = judged + clerk.judged, wrong + clerk.wrong, steps + len(record.actions)
-    assert len(rollout.moves) == steps
+    assert len(rollout.outputs) == steps
     assert (int(rollout.judged.sum()), int(rollout.wrong().sum())) == (judged, wrong)
     assert 0 < wrong < judged
 
@@ -180,15 +189,15 @@ def test_a_greedy_batch_decides_as_the_policy_does(
     """
     worlds = worlds_of(conditions, rules)
     network = in_double(load(policy).requires_grad_(requires_grad=False).double())
-    monkeypatch.setattr("fogbench.learned.policy.weighted", lambda _: network)
-    rollout = roll(policy, network, [Episode(world, luck(k)) for k, world in enumerate(worlds)], greedy)
+    monkeypatch.setattr("fogbench.learned.agent.weighted", lambda _: network)
+    rollout = roll(policy, network, episodes_in(worlds), greedy)
     judged = wrong = steps = 0
     for k, world in enumerate(worlds):
         judge, record = GridJudge(world.task), loop.Record()
         outcome = loop.roll(world, policy.start(world.task, luck(0)), luck(k), record, judge)
         assert rollout.reached[k] == (outcome is Outcome.REACHED)
         judged, wrong, steps = judged + judge.judged, wrong + judge.wrong, steps + len(record.actions)
-    assert (len(rollout.moves), int(rollout.judged.sum()), int(rollout.wrong().sum())) == (steps, judged, wrong)
+    assert (len(rollout.outputs), int(rollout.judged.sum()), int(rollout.wrong().sum())) == (steps, judged, wrong)
 
 
 @pytest.mark.parametrize("policy", POLICIES, ids=lambda policy: f"{type(policy).__name__} {policy.size}")
@@ -198,7 +207,7 @@ def test_the_gradient_of_a_batch_is_that_of_its_episodes(conditions: Callable[..
     network = load(policy).double()
 
     def gradient(numbers: list[int]) -> list[torch.Tensor]:
-        episodes = [Episode(worlds[k], luck(k)) for k in numbers]
+        episodes = [Episode(worlds[k], luck(k), teacher_in(worlds[k])) for k in numbers]
 
         def down_and_up(moment: Moment) -> Array:
             return np.full(len(moment.episodes), 2 * (moment.step % 2))
@@ -227,6 +236,6 @@ def in_double(network: Any) -> Any:
 def test_a_map_of_another_size_is_refused(conditions: Callable[..., Any]) -> None:
     """A network for whole maps of one size does not start on another, as in a single episode."""
     policy = Macn(**{**SMALL, "size": (8, 8)}, reading="map", memory="feedforward")
-    episodes = [Episode(world, luck(0)) for world in worlds_of(conditions, RULES[0], 2)]
+    episodes = episodes_in(worlds_of(conditions, RULES[0], 2))
     with pytest.raises(Mistake, match=r"^got a map of \d+x\d+; expected 8x8, the size$"):
         roll(policy, weighted(policy), episodes, greedy)

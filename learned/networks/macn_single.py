@@ -14,7 +14,8 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 from torch import Tensor
 
-from fogbench.learned.encoding.grid import CHANNELS, COMPASS, SEEN, Inputs
+from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SEEN
 from fogbench.learned.kernels.linear import apply
 from fogbench.learned.kernels.native import NUMBERS, job, matrix, pointer, run, vector
 from fogbench.learned.value_iteration.forward import correlate, forward_block

@@ -5,7 +5,6 @@ from typing import Any, Protocol, runtime_checkable
 
 from torch import Tensor, nn
 
-from fogbench.learned.encoding.grid import Inputs
 from fogbench.worlds.mistake import Mistake
 
 
@@ -18,13 +17,13 @@ class Settling(Protocol):
 
 
 class Network(nn.Module):
-    """A network that takes one step at a time."""
+    """A network that takes one step at a time; its inputs are what the encoding of its kind of world makes."""
 
     def blank(self, batch: tuple[int, ...]) -> Any:
         """The state before the first step: nested tuples of tensors [*batch, ...]."""
         raise NotImplementedError
 
-    def plan(self, inputs: Inputs) -> Tensor:
+    def plan(self, inputs: Any) -> Tensor:
         """What the network makes of the image, before anything is remembered: [B, planned].
 
         Only `fogbench look` asks for it.
@@ -35,8 +34,8 @@ class Network(nn.Module):
         del inputs
         raise Mistake(f"{type(self).__name__}: got no `plan`; expected what the network makes of the image.")
 
-    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
-        """From what is seen and the state before to the scores [B, 4] of the moves and the state after."""
+    def forward(self, inputs: Any, state: Any) -> tuple[Tensor, Any]:
+        """From what is seen and the state before to the scores [B, A] of the outputs and the state after."""
         raise NotImplementedError
 
 

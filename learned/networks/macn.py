@@ -1,0 +1,43 @@
+"""Memory augmented control networks: plan on what is seen, remember, decide (Khan et al. 2018, section 3 and figure 2).
+
+How the values enter the controller is not said there. Here they come relative to the agent's own, since what matters is
+where they are higher; with them comes Q at the agent's cell.
+"""
+
+import torch
+from torch import Tensor
+
+from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.macn import Macn
+from fogbench.learned.networks.macn_single import Weights, see
+from fogbench.learned.networks.memory import RememberingNetwork
+from fogbench.learned.networks.vin import planner
+
+
+class MacnNetwork(RememberingNetwork):
+    """A VI module before a memory."""
+
+    def __init__(self, settings: Macn) -> None:
+        """Draw the weights."""
+        super().__init__(settings, settings.planned)
+        self.planner = planner(settings)
+        self.settled: Weights | None = None
+
+    @torch.no_grad()
+    def settle(self) -> None:
+        """Get ready for single steps without gradients: from now on the weights must not change."""
+        if self.features.weight.is_cpu:
+            layers = *self.planner.reward_map.collapsed(), self.planner.normalised(), *self.features.parameters()
+            self.settled = Weights(*(weight.contiguous() for weight in layers))
+
+    def see(self, inputs: Inputs) -> Tensor:
+        """As for all, for one sample in one call."""
+        if self.settled and len(inputs.image) == 1:
+            return see(self.settled, self.planner.iterations, inputs)
+        return super().see(inputs)
+
+    def plan(self, inputs: Inputs) -> Tensor:
+        """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
+        q, v = self.planner(inputs.image)
+        here = inputs.here(q)  # [B, 4], of which the largest is V there
+        return torch.cat([v.flatten(1), here], 1) - here.amax(1, keepdim=True)

@@ -1,0 +1,95 @@
+"""Networks that remember: features of what is seen go into a DNC, an LSTM, or a layer that forgets; scores come out."""
+
+from typing import Any, NamedTuple, cast
+
+import torch
+from torch import Tensor, nn
+
+from fogbench.learned.dnc.controller import Controller
+from fogbench.learned.dnc.dnc import DNC
+from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.encoding.grid_sizes import OUTPUTS
+from fogbench.learned.layers import linear
+from fogbench.learned.memory import Remembering, feedforward_shapes, lstm_shapes
+from fogbench.learned.networks.network import Network
+
+
+class RememberingNetwork(Network):
+    """What is planned, with the sight and the compass as low-level features, into a memory."""
+
+    def __init__(self, settings: Remembering, planned: int) -> None:
+        """Draw the weights; `planned` is how many numbers `plan` gives."""
+        super().__init__()
+        self.features = linear(settings.remembering_shapes(planned)["features.weight"])
+        self.memory = remember(settings)
+
+    def see(self, inputs: Inputs) -> Tensor:
+        """The features [B, F] of what is seen; they depend on nothing that is remembered."""
+        told = torch.cat([self.plan(inputs), inputs.sight.flatten(1), inputs.compass], 1)
+        return cast(Tensor, self.features(told)).relu()
+
+    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
+        """One step."""
+        return self.memory.step(self.see(inputs), state)
+
+    def blank(self, batch: tuple[int, ...]) -> Any:
+        """The memory's."""
+        return self.memory.blank(batch)
+
+
+def remember(settings: Remembering) -> "DNC | LSTM | FeedForward":
+    """The memory of some settings, with weights drawn anew."""
+    inputs, outputs, hidden = settings.features, len(OUTPUTS), settings.hidden
+    if settings.memory == "lstm":
+        return LSTM(inputs, outputs, hidden)
+    if settings.memory == "feedforward":
+        return FeedForward(inputs, outputs, hidden)
+    return DNC(inputs, outputs, settings.heads, rows=settings.memory_rows, hidden=hidden)
+
+
+class LSTMState(NamedTuple):
+    """What an LSTM carries from one step to the next."""
+
+    hidden: Tensor
+    """[..., hidden]"""
+    cell: Tensor
+    """[..., hidden]"""
+
+
+class LSTM(nn.Module):
+    """The controller of a DNC without its memory."""
+
+    def __init__(self, inputs: int, outputs: int, hidden: int) -> None:
+        """Draw the weights."""
+        super().__init__()
+        self.controller = Controller(inputs, hidden)
+        self.output = linear(lstm_shapes(inputs, outputs, hidden)["output.weight"])
+
+    def blank(self, batch: tuple[int, ...] = ()) -> LSTMState:
+        """The state before the first step: zeros."""
+        zeros = self.output.weight.new_zeros(*batch, self.controller.hidden)
+        return LSTMState(zeros, zeros)
+
+    def step(self, x: Tensor, state: LSTMState) -> tuple[Tensor, LSTMState]:
+        """From features [..., inputs] to scores [..., outputs] and the next state."""
+        hidden, cell = self.controller(x, state)
+        return self.output(hidden), LSTMState(hidden, cell)
+
+
+class FeedForward(nn.Module):
+    """A layer in the place of the controller."""
+
+    def __init__(self, inputs: int, outputs: int, hidden: int) -> None:
+        """Draw the weights."""
+        super().__init__()
+        shapes = feedforward_shapes(inputs, outputs, hidden)
+        self.controller, self.output = linear(shapes["controller.weight"]), linear(shapes["output.weight"])
+
+    def blank(self, batch: tuple[int, ...] = ()) -> tuple[()]:
+        """Nothing is remembered, whatever the batch."""
+        del batch
+        return ()
+
+    def step(self, x: Tensor, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
+        """From features [..., inputs] to scores [..., outputs]."""
+        return self.output(self.controller(x).relu()), state

@@ -1,0 +1,82 @@
+"""Worlds to learn on and to be tried on, and how a network does in those that were held out."""
+
+from typing import NamedTuple
+
+import numpy as np
+import torch
+
+from fogbench.learned.networks.network import Network
+from fogbench.learned.training.recipe import Recipe, Worlds
+from fogbench.learned.training.rollout import Episode, greedy, roll
+from fogbench.planners import JUDGES, judge_of
+from fogbench.planners.judging import Teacher
+from fogbench.worlds.mistake import Mistake, one_of
+from fogbench.worlds.streams import stream
+from fogbench.worlds.tables import registered
+from fogbench.worlds.types import MapFamily, World
+
+
+class Drawn(NamedTuple):
+    """A world, and the luck in it."""
+
+    world: World
+    luck: np.random.Generator
+
+
+def draw_world(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Drawn:
+    """The world of a number on a map of `family`, and the luck in it; another purpose shares nothing with them."""
+    map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {what}", number) for what in ("map", "luck"))
+    return Drawn(family.sample(map_luck, number, worlds.conditions), luck)
+
+
+def teacher_in(world: World, *, hindsight: bool = False) -> Teacher:
+    """Who says which outputs are right in a world, by what is known or, if any of them is, with hindsight.
+
+    Raises:
+        Mistake: nobody knows for such a kind of world.
+    """
+    kind = world.task.kind
+    judge = judge_of(kind)
+    if judge is None:
+        kinds = one_of({**JUDGES, **registered("fogbench.judges")})
+        raise Mistake(f"got worlds of kind {kind}, where nobody says which actions are right; expected {kinds}")
+    if hindsight and not hasattr(judge, "hindsight"):
+        raise Mistake(f"got hindsight in worlds of kind {kind}, whose judge has none; expected hindsight: false")
+    teacher: Teacher = judge.hindsight(world) if hindsight else judge(world.task)
+    return teacher
+
+
+def rehearse(recipe: Recipe) -> None:
+    """Draw a world of each lesson and variant, so that what cannot be played is told before the first batch.
+
+    Raises:
+        Mistake: there is no such world, the network does not fit it, nobody knows what is right there, or its tasks are
+            a list, of which those to learn on, those to be tried on, and those that a scenario tests on are the same.
+    """
+    for place, worlds, family in recipe.places():
+        try:
+            listed = family.tasks(worlds.conditions)
+            world, _ = draw_world(worlds, family, "training", 0, 0)
+            recipe.network.encoding().start(world.task)
+            teacher_in(world, hindsight=recipe.training.teacher.hindsight)
+        except Mistake as error:
+            raise Mistake(f"{recipe.name}: {place}: {error}.") from None
+        if listed is not None:
+            told = f"got a list of {listed} tasks; expected maps or tasks that are drawn afresh"
+            raise Mistake(f"{recipe.name}: {place}: {told}.")
+
+
+def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
+    """How a network does in the held-out episodes of each variant: success and test error [%]."""
+    scores = {}
+    for name, worlds in recipe.held_out.items():
+        drawn = [
+            draw_world(worlds, worlds.family, "validation", 0, number)  # the same for every seed
+            for number in range(recipe.training.validation.episodes)
+        ]
+        with torch.no_grad():
+            episodes = [Episode(world, luck, teacher_in(world)) for world, luck in drawn]
+            rollout = roll(recipe.network, network, episodes, greedy)
+        wrong = int(rollout.wrong().sum()) / max(1, int(rollout.judged.sum()))
+        scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
+    return scores
