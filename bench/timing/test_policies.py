@@ -37,7 +37,7 @@ Decide = Callable[[], object]
 
 def begun(policy: Policy) -> tuple[PolicyAgent, Observation]:
     """An agent that has decided once, and what it sees."""
-    agent = policy.start(WORLD.task, np.random.default_rng(0))
+    agent = cast(PolicyAgent, policy.start(WORLD.task, np.random.default_rng(0)))
     observation = WORLD.sense(WORLD.reset(), np.random.default_rng(0))
     agent.act(observation)
     return agent, observation
