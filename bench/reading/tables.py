@@ -35,6 +35,7 @@ AGENT = Table(
     ("kinds", "start", "parameter_bytes"),
 )
 NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "encoding"))
+LEARNER = Table(learned.LEARNERS, ("fogbench.learners",), ("student", "words"))
 KIND = Table(KINDS, (), ())
 
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS}
