@@ -57,7 +57,7 @@ def _train(course: "Course", console: Console) -> None:
         TextColumn("{task.fields[loss]}"),
     )
     with Progress(TextColumn("{task.description}", markup=False), *columns, console=console) as bars:
-        total, done = recipe.training.batches, course.student.batches
+        total, done = recipe.learning.batches, course.student.batches
         if done:
             _say(f"It goes on from batch {done}.", console)
         bar = bars.add_task(recipe.name, total=total, completed=done, loss="")
@@ -71,16 +71,18 @@ def _train(course: "Course", console: Console) -> None:
 
 def _changed(recipe: Recipe, device: str, batches: int | None, seed: int | None) -> Recipe:
     """A recipe with what the command line says in its place."""
-    given: dict[str, Any] = {"batches": batches, "seed": seed}
-    training = recipe.training.model_copy(update={key: value for key, value in given.items() if value is not None})
-    name = recipe.name if seed is None else f"{recipe.name}-seed{seed}"
-    network = recipe.network.model_copy(update={"device": device, "seed": training.seed})
+    learning: Any = recipe.learning
+    if batches is not None:
+        learning = learning.model_copy(update={"batches": batches})
+    if seed is not None:
+        recipe = replace(recipe, name=f"{recipe.name}-seed{seed}", seed=seed)
+    network = recipe.network.model_copy(update={"device": device, "seed": recipe.seed})
     if device == "cuda":
-        import torch  # noqa: PLC0415  the network has loaded it
+        import torch  # noqa: PLC0415  only now is it asked
 
         if not torch.cuda.is_available():
             raise Mistake("--device: got cuda, but PyTorch finds no CUDA device here; expected cpu.")
-    return replace(recipe, name=name, network=network, training=training)
+    return replace(recipe, network=network, learning=learning)
 
 
 def _told(trial: "Trial") -> str:

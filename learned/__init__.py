@@ -13,6 +13,9 @@ ENCODINGS = {"grid": "fogbench.learned.encoding.grid:GridEncoding"}
 Other packages add theirs by the group `fogbench.encodings`.
 """
 
+LEARNERS = {"imitation": "fogbench.learned.training.imitation:Imitation"}
+"""How networks learn, by the name under `learning:` in a recipe; others by the group `fogbench.learners`."""
+
 EXTRAS = dict.fromkeys(LEARNED, "learned")
 """The extra of the project (`pip install ".[learned]"`) that a policy needs."""
 

@@ -30,7 +30,7 @@ def load(settings: Policy) -> Network:
         if card.sha256 != settings._weights:  # noqa: SLF001  whose words name them
             raise Mistake(f"a checkpoint that stays as it was ({place.name} was replaced meanwhile)")
         forms = {name: form(tensor) for name, tensor in network.state_dict().items()}
-        weights = checkpoint.read_weights(place, card, forms)
+        weights = checkpoint.read_weights(place, card.sha256, forms)
         network.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
     return network.to(settings.device)
 

@@ -6,6 +6,7 @@ Importing this imports no torch.
 import json
 import os
 from collections.abc import Callable, Container, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -123,12 +124,12 @@ def first_of(error: ValidationError) -> str:
     return f"{where}: {detail['msg']}" if where else detail["msg"]
 
 
-def read_weights(place: Path, card: Card, forms: Mapping[str, str]) -> dict[str, Array]:
+def read_weights(place: Path, digest: str, forms: Mapping[str, str]) -> dict[str, Array]:
     """The weights of a file.
 
     Args:
         place: the file.
-        card: which must have been written for it.
+        digest: of the file that its card was written for.
         forms: how each of the weights must lie there, by its name.
 
     Raises:
@@ -138,7 +139,7 @@ def read_weights(place: Path, card: Card, forms: Mapping[str, str]) -> dict[str,
         contents = place.read_bytes()
     except OSError as error:
         raise Mistake(f"a checkpoint that can be read ({place.name}: {error.strerror})") from None
-    if sha256(contents) != card.sha256:
+    if sha256(contents) != digest:
         raise Mistake(f"a checkpoint that is whole ({place.name} is not the file that its card was written for)")
     try:
         weights: dict[str, Array] = load(contents)
@@ -152,6 +153,21 @@ def read_weights(place: Path, card: Card, forms: Mapping[str, str]) -> dict[str,
         if not np.isfinite(weights[name]).all():
             raise Mistake(f"a checkpoint of numbers ({place.name}: {name} has some that are none)")
     return weights
+
+
+@lru_cache(maxsize=256)
+def _held(place: Path, _changed: tuple[int, int], digest: str, forms: frozenset[tuple[str, str]]) -> None:
+    read_weights(place, digest, dict(forms))
+
+
+def hold_weights(place: Path, digest: str, forms: Mapping[str, str]) -> None:
+    """As `read_weights`, for the mistakes alone: a file that stays as it is is read once in a process."""
+    try:
+        status = place.stat()
+    except OSError:
+        read_weights(place, digest, forms)  # which says so
+        return
+    _held(place, (status.st_mtime_ns, status.st_size), digest, frozenset(forms.items()))
 
 
 def form(array: Any) -> str:

@@ -163,7 +163,7 @@ class Policy(Settings):
             self._built()
         elif self.checkpoint != NONE:
             place = checkpoint.place_of(self.checkpoint)
-            checkpoint.read_weights(place, checkpoint.read_card(place), checkpoint.forms(shapes))
+            checkpoint.hold_weights(place, self._weights, checkpoint.forms(shapes))
 
     def _built(self) -> Any:
         """The network with its weights."""

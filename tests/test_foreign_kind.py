@@ -33,6 +33,31 @@ ring = ring_kind.judge:RingJudge
 stations = ring_kind.stations:Stations
 [fogbench.planners]
 walker = ring_kind.walker:Walker
+[fogbench.learned]
+ring_net = ring_kind.policy:RingPolicy
+[fogbench.encodings]
+ring = ring_kind.encoding:RingEncoding
+"""
+
+RECIPE = """\
+name: round
+network: ring_net
+maps: {stations: {size: 9, cut: 0.5}}
+track: {slip: 0.1}
+budget: {steps: 20}
+learning: {imitation: {batches: 30, batch: 32, rate: [1e-1, 1e-2], curriculum: {easy: {size: 5}}}}
+validation: {episodes: 40, every: 10}
+"""
+
+NETS = """\
+name: nets
+maps: {stations: {size: 9, cut: 0.5}}
+budget: {steps: 20}
+agents:
+  - walker
+  - ring_net: {checkpoint: none, label: fresh}
+  - ring_net: {checkpoint: results/training/round/round.safetensors, label: trained}
+episodes: 40
 """
 
 MIXED = """\
@@ -217,6 +242,32 @@ def test_a_kind_that_lacks_a_package_is_skipped(command: Any, site: Path) -> Non
         assert "grid: 6 episodes of 1 agents" in told
     finally:
         world.write_text(text)
+
+
+def test_a_network_of_its_own_learns_by_imitation(command: Any) -> None:
+    """From a recipe of its kind, in a few batches; in a scenario it then does better than before, and is replayed."""
+    code, text = command("train", "round.yaml", round=RECIPE)
+    assert code == 0, text
+    assert "The best weights" in text
+    code, text = command("run", "nets.yaml", nets=NETS)
+    assert code == 0, text
+    rows = pd.read_parquet(command.folder / "results" / "nets" / "episodes")
+    success = (rows["outcome"] == "REACHED").groupby(rows["agent"]).mean()
+    assert success["trained"] > 0.9 > success["fresh"]
+    assert rows.loc[rows["agent"] == "trained", "judged"].sum() > 40
+    code, text = command("replay", "nets.yaml", "--agent", "trained", "--out", "net.png")
+    assert code == 0, text
+    assert "It ends as recorded." in text
+    code, text = command("look", "nets.yaml", "--agent", "trained")
+    assert code == 0, text
+    assert "the same optimal move" in text
+
+
+def test_a_network_of_another_kind_does_not_learn_there(command: Any) -> None:
+    """One line says which worlds it plays."""
+    code, text = command("train", "wrong_net.yaml", wrong_net=RECIPE.replace("network: ring_net", "network: vin"))
+    assert code == 2
+    assert "network: got one that plays grid; expected one that plays worlds of kind ring." in text
 
 
 def test_what_was_never_seen_changes_nothing(ring: Any) -> None:

@@ -1,4 +1,4 @@
-"""A recipe: one YAML file with a scenario's keys for its worlds, a network, and how it is trained."""
+"""A recipe: one YAML file with a scenario's keys for its worlds, a network, and how it learns."""
 
 from dataclasses import replace
 from functools import partial
@@ -11,12 +11,14 @@ from fogbench.bench.reading.document import parse
 from fogbench.bench.reading.finding import blocks_of, opened
 from fogbench.bench.reading.overlays import pages, settle
 from fogbench.bench.reading.page import FileName
+from fogbench.bench.reading.plugins import load
 from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.bench.reading.scenario import wrong
-from fogbench.bench.reading.tables import NETWORK
+from fogbench.bench.reading.tables import LEARNER, NETWORK, Table
 from fogbench.bench.reading.worlds import Reading
-from fogbench.learned.training.recipe import Lesson, Recipe, Training, Worlds
+from fogbench.learned.training.recipe import Learner, Lesson, Recipe, Validation, Worlds
 from fogbench.worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import MapFamily
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ ELSEWHERE = {"seed": "the recipe's own seed, which fixes the weights too", "devi
 """Settings of a network that a recipe does not give with it."""
 
 
-class RecipePage(Training):
+class RecipePage(Settings):
     """A recipe: a network, the worlds where it learns, and how."""
 
     name: FileName
@@ -42,61 +44,16 @@ class RecipePage(Training):
     """One map family with its settings."""
     kind: str | None = None
     """Kind of the worlds on these maps; by default the first that the family can make."""
+    learning: dict[str, Any]
+    """One way to learn, with its settings."""
+    validation: Validation = Validation()
+    """How the network is tried while it learns."""
     variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
     """Where the network is tried while it learns: name to what differs from the rest; by default the rest itself."""
     lessons: Annotated[list[str], Field(default_factory=list)]
     """Variants on which it learns, by turns; by default it learns on the rest itself."""
-
-
-class LessonReading(Reading[RecipePage]):
-    """What a page says of worlds to learn on."""
-
-    def __init__(self, page: Value, folder: Path) -> None:
-        """Read a page; plug-ins, checkpoints and map files are relative to `folder`."""
-        super().__init__(RecipePage, page, folder)
-        curriculum = page.child("curriculum")
-        self.easy = self._easy(page.child("maps"), curriculum.child("easy") if curriculum else None)
-
-    def _easy(self, maps: Value | None, easy: Value | None) -> MapFamily | None:
-        """The family with the settings of the curriculum's beginning; without a curriculum, the family."""
-        if maps is None or easy is None or self.family is None:
-            return self.family
-        (block,) = maps.fields().values()
-        return cast(MapFamily | None, self.block(type(self.family), merge(opened(block), easy)))
-
-
-class RecipeReading(LessonReading):
-    """What the page of a recipe says, and those of the variants on which the network learns."""
-
-    def __init__(self, page: Value, variants: dict[str, Value], folder: Path) -> None:
-        """Read a page, and which of its variants are lessons; without any, the page itself is the one lesson."""
-        super().__init__(page, folder)
-        network, lessons = page.child("network"), page.child("lessons")
-        self.network = self._network(network) if network and isinstance(network.content, str | dict) else None
-        named = self._lessons(lessons.content if lessons and isinstance(lessons.content, list) else [], variants)
-        self.lessons = [LessonReading(lesson, folder) for lesson in named] or [self]
-        self.faults += [fault for lesson in self.lessons if lesson is not self for fault in lesson.faults]
-
-    def _lessons(self, items: list[Value], variants: dict[str, Value]) -> list[Value]:
-        for item in items:
-            if isinstance(item.content, str) and item.content not in variants and not item.unset:
-                self.faults.append(item.wrong(one_of(variants), near(item.content, variants)))
-        return [variants[str(item.content)] for item in items if str(item.content) in variants]
-
-    def _network(self, item: Value) -> "Policy | None":
-        named = self.named(item, "the name of a network, or one name with its settings")
-        if named is None:
-            return None
-        name, block, wrong_name = named
-        _, found, missing = self.find(NETWORK, name, wrong_name)
-        if missing:
-            self.faults.append(wrong_name(f"a network that is installed; this one {missing}", ""))
-        if found is None:
-            return None
-        self.faults += [block.wrong_key(key, told) for key, told in ELSEWHERE.items() if key in block.fields()]
-        own = {key: value for key, value in block.fields().items() if key not in ELSEWHERE}
-        fresh = {"checkpoint": replace(block, content="none")}
-        return cast("Policy | None", self.block(found, replace(block, content=fresh | own)))
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0
+    """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
 
 def read_recipe(text: str, path: Path) -> Recipe:
@@ -114,32 +71,112 @@ def read_recipe(text: str, path: Path) -> Recipe:
     page = parse(text, faults)
     if page is None:
         raise wrong(faults, path)
+    if flat := _flat(page):
+        raise wrong([flat], path)
     rows = pages(page, faults, VARIED, partial(blocks_of, folder=path.parent))
-    recipe = RecipeReading(page, rows, path.parent)
+    whole = Reading(RecipePage, page, path.parent)
     variants = {name: Reading(RecipePage, row, path.parent) for name, row in rows.items()}
-    faults += settle([recipe.faults, *(variant.faults for variant in variants.values())])
+    network, learning = _network(whole, page.child("network")), _learning(whole, page.child("learning"))
+    pairs = [(variants[name], rows[name]) for name in _names(whole, page.child("lessons"), rows)] or [(whole, page)]
+    lessons = [(reading, _easy(reading, lesson)) for reading, lesson in pairs]
+    faults += settle([whole.faults, *(variant.faults for variant in variants.values())])
     if faults:
         raise wrong(faults, path)
     if unset := next((value.unset for value in page.below() if value.unset), ""):
         raise Mistake(f"{path}: got ${{{unset}}}; expected that environment variable to be set.")
-    return _recipe(text, recipe, variants)
-
-
-def _recipe(text: str, recipe: RecipeReading, variants: dict[str, Reading[RecipePage]]) -> Recipe:
-    """A recipe of which everything could be read."""
-    page = recipe.page
-    assert page is not None
-    assert recipe.network is not None
-    training = Training(**{name: getattr(page, name) for name in Training.model_fields})
+    assert network is not None
+    for reading in (whole, *variants.values()):
+        _refuse(reading, network, path)
+    assert whole.page is not None
+    assert learning is not None
     return Recipe(
-        name=page.name,
-        about=page.about,
+        name=whole.page.name,
+        about=whole.page.about,
         text=text,
-        network=recipe.network.model_copy(update={"seed": training.seed}),
-        lessons=tuple(Lesson(_worlds(lesson), cast(MapFamily, lesson.easy)) for lesson in recipe.lessons),
+        network=network.model_copy(update={"seed": whole.page.seed}),
+        lessons=tuple(Lesson(_worlds(reading), cast(MapFamily, easy)) for reading, easy in lessons),
         held_out={name: _worlds(variant) for name, variant in variants.items()},
-        training=training,
+        learning=learning,
+        validation=whole.page.validation,
+        seed=whole.page.seed,
     )
+
+
+def _refuse(reading: Reading[RecipePage], network: "Policy", path: Path) -> None:
+    """Nothing is learned from worlds that cannot be made here, or that the network does not play.
+
+    Raises:
+        Mistake: it is so.
+    """
+    if reading.skipped:
+        raise Mistake(f"{path}: maps: {reading.skipped}.")
+    if reading.kind not in network.kinds:
+        plays = f"one that plays worlds of kind {reading.kind}"
+        raise Mistake(f"{path}: network: got one that plays {', '.join(sorted(network.kinds))}; expected {plays}.")
+
+
+def _flat(page: Value) -> Fault | None:
+    """The first setting of a learner that stands beside the keys of a recipe, as all did once."""
+    for name, place in LEARNER.shipped.items():
+        for key in page.fields():
+            if key in load(LEARNER, name, place).model_fields and key not in RecipePage.model_fields:
+                return page.wrong_key(key, f"learning: {{{name}: {{{key}: ...}}}}", "learning")
+    return None
+
+
+def _network(reading: Reading[RecipePage], item: Value | None) -> "Policy | None":
+    """The network that a page names, with fresh weights unless it says others."""
+    if item is None or not isinstance(item.content, str | dict):
+        return None
+    found = _found(reading, item, NETWORK, "network")
+    if found is None:
+        return None
+    settings, block = found
+    reading.faults += [block.wrong_key(key, told) for key, told in ELSEWHERE.items() if key in block.fields()]
+    own = {key: value for key, value in block.fields().items() if key not in ELSEWHERE}
+    fresh = {"checkpoint": replace(block, content="none")}
+    return cast("Policy | None", reading.block(settings, replace(block, content=fresh | own)))
+
+
+def _learning(reading: Reading[RecipePage], item: Value | None) -> Learner | None:
+    """How the network learns, as a page says it."""
+    if item is None or not isinstance(item.content, dict):
+        return None
+    found = _found(reading, item, LEARNER, "learner")
+    return cast(Learner | None, reading.block(*found)) if found else None
+
+
+def _found(reading: Reading[RecipePage], item: Value, table: Table, noun: str) -> tuple[type[Settings], Value] | None:
+    """The class that an item names, and its block; a training cannot do without it."""
+    named = reading.named(item, f"the name of a {noun}, or one name with its settings")
+    if named is None:
+        return None
+    name, block, wrong_name = named
+    _, found, missing = reading.find(table, name, wrong_name)
+    if missing:
+        reading.faults.append(wrong_name(f"a {noun} that is installed; this one {missing}", ""))
+    return (found, block) if found else None
+
+
+def _names(reading: Reading[RecipePage], lessons: Value | None, rows: dict[str, Value]) -> list[str]:
+    """The variants that are lessons."""
+    items = lessons.content if lessons and isinstance(lessons.content, list) else []
+    names = [item for item in items if isinstance(item.content, str) and not item.unset]
+    unknown = [item for item in names if item.content not in rows]
+    reading.faults += [item.wrong(one_of(rows), near(str(item.content), rows)) for item in unknown]
+    return [str(item.content) for item in names if item not in unknown]
+
+
+def _easy(reading: Reading[RecipePage], lesson: Value) -> MapFamily | None:
+    """The maps of a lesson's page with the curriculum's first settings; without a curriculum, as they are."""
+    learning, maps = lesson.child("learning"), lesson.child("maps")
+    blocks = list(learning.fields().values()) if learning else []
+    curriculum = blocks[0].child("curriculum") if blocks else None
+    easy = curriculum.child("easy") if curriculum else None
+    if maps is None or easy is None or reading.family is None:
+        return reading.family
+    (block,) = maps.fields().values()
+    return cast(MapFamily | None, reading.block(type(reading.family), merge(opened(block), easy)))
 
 
 def _worlds(reading: Reading[RecipePage]) -> Worlds:

@@ -34,6 +34,7 @@ AGENT = Table(
     ("kinds", "start", "parameter_bytes"),
 )
 NETWORK = Table(learned.LEARNED, ("fogbench.learned",), (*AGENT.members, "network", "encoding"))
+LEARNER = Table(learned.LEARNERS, ("fogbench.learners",), ("student", "words"))
 KIND = Table({name: kind.conditions for name, kind in KINDS.items()}, ("fogbench.kinds",), ("covariates",))
 
 EXTRAS = {**planners.EXTRAS, **learned.EXTRAS, **{name: kind.extra for name, kind in KINDS.items() if kind.extra}}

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import torch
 
 from fogbench.learned import checkpoint
-from fogbench.learned.training.imitation import Student
 from fogbench.learned.training.recipe import Recipe
 from fogbench.learned.training.trials import rehearse, validate
 from fogbench.worlds.files import put
@@ -58,7 +57,7 @@ class Course:
         rehearse(recipe)
         folder.mkdir(parents=True, exist_ok=True)
         self.recipe, self.folder, self.origin = recipe, folder, origin
-        self.student = Student(recipe)
+        self.student = recipe.learning.student(recipe)
         self.trials: list[Trial] = []
         self.losses: list[float] = []  # since the last trial
         self.best: list[float] = []
@@ -69,7 +68,7 @@ class Course:
     def go_on(self) -> Iterator[News]:
         """Train to the end; stopped at any moment, a new course goes on from the last saved state to the same end."""
         began, saved = perf_counter() - self.seconds, perf_counter()
-        while self.student.batches < self.recipe.training.batches:
+        while self.student.batches < self.recipe.learning.batches:
             self.losses.append(self.student.learn())
             loss, tried = self.losses[-1], self._is_due()
             self.seconds = perf_counter() - began
@@ -81,8 +80,8 @@ class Course:
             yield News(self.student.batches, loss, self.trials[-1] if tried else None)
 
     def _is_due(self) -> bool:
-        batches, training = self.student.batches, self.recipe.training
-        return batches % training.validation.every == 0 or batches == training.batches
+        batches, recipe = self.student.batches, self.recipe
+        return batches % recipe.validation.every == 0 or batches == recipe.learning.batches
 
     def _try(self) -> None:
         """Try the network; keep its weights if they are the best so far."""
@@ -100,9 +99,9 @@ class Course:
     def _keep(self) -> None:
         training = {
             "recipe": self.recipe.text,
-            "seed": self.recipe.training.seed,
+            "seed": self.recipe.seed,
             "batches": self.student.batches,
-            "of": self.recipe.training.batches,
+            "of": self.recipe.learning.batches,
             "variants": self.trials[-1]["variants"],
             "minutes": round(self.seconds / 60, 1),
             "device": self.recipe.network.device,

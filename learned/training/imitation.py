@@ -1,114 +1,64 @@
-"""Imitation of the planner that has seen the same: a network learns which moves are right on its own known map.
+"""How a network learns by imitation, as it stands in a recipe. Importing this imports no torch."""
 
-It learns where its own decisions lead it (Ross, Gordon & Bagnell 2011, "DAgger"), from fresh maps in every batch. All
-luck of a batch comes from streams of its number, so a training goes on from its weights and that number alone.
-"""
+from pkgutil import resolve_name
+from typing import Annotated, Any, Literal
 
-from collections.abc import Mapping
-from typing import Any
+from pydantic import Field
 
-import torch
-from torch import Tensor
+from fogbench.learned.training.recipe import Recipe, Student
+from fogbench.worlds.settings import Positive, Probability, Settings
 
-from fogbench.learned.agent import load
-from fogbench.learned.networks.network import Network
-from fogbench.learned.training.curriculum import eased
-from fogbench.learned.training.exploring import Explorer, Noisy
-from fogbench.learned.training.recipe import Recipe, Training
-from fogbench.learned.training.rollout import Episode, Rollout, roll
-from fogbench.learned.training.trials import draw_world, teacher_in
-from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.streams import digest, stream
+Rate = Annotated[float, Field(gt=0)]
+"""A number above 0."""
 
-OPTIMISERS = {"adam": torch.optim.Adam, "rmsprop": torch.optim.RMSprop}
+Weight = Annotated[float, Field(ge=0)]
+"""A number from 0."""
 
 
-class Student:
-    """A network that learns batch by batch."""
+class Teacher(Settings):
+    """Who decides while training: the teacher, or the network as it is (Ross, Gordon & Bagnell 2011, "DAgger").
 
-    def __init__(self, recipe: Recipe) -> None:
-        """Before the first batch, with fresh weights or those of the recipe's checkpoint."""
-        self.recipe = recipe
-        self.network = load(recipe.network)
-        self.optimiser = OPTIMISERS[recipe.training.optimiser](self.network.parameters())
-        self.batches = 0
-        """Learned from so far."""
+    The teacher takes an optimal move on the map that the agent has seen. Whoever decides, the network is taught which
+    moves are optimal there.
+    """
 
-    def learn(self) -> float:
-        """Play one more batch and learn from it; the loss before.
-
-        Raises:
-            Mistake: the weights would be numbers no longer; they stay as they were.
-        """
-        training, done = self.recipe.training, self.batches / self.recipe.training.batches
-        rollout = self._play(done)
-        loss = imitation_loss(rollout)
-        (loss + training.access_decay * access_weight(self.network)).backward()  # type: ignore[no-untyped-call]
-        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), training.clip)
-        if not norm.isfinite():
-            place = f"{self.recipe.name}, batch {self.batches + 1}"
-            raise Mistake(f"{place}: got a gradient of {norm.item()}; expected a smaller rate.")
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate(training, done)
-        self.optimiser.step()
-        self.optimiser.zero_grad()
-        self.batches += 1
-        return loss.item()
-
-    def state(self) -> dict[str, Any]:
-        """All of it that changes."""
-        weights, optimiser = self.network.state_dict(), self.optimiser.state_dict()
-        return {"network": weights, "optimiser": optimiser, "batches": self.batches}
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Become as it was."""
-        self.network.load_state_dict(state["network"])
-        self.optimiser.load_state_dict(state["optimiser"])
-        self.batches = state["batches"]
-
-    def _play(self, done: float) -> Rollout:
-        recipe, training = self.recipe, self.recipe.training
-        episodes = self._episodes(done)
-        luck = stream(training.seed, recipe.lessons[0].worlds.family.words(), "training moves", self.batches)
-        network = self.network
-        if training.noise:
-            network = Noisy(network, training.noise, int(digest(training.seed, "noise", self.batches)[:8], 16))
-        first_share, last_share = training.teacher.share
-        share = first_share + part(done, training.teacher.until) * (last_share - first_share)
-        return roll(recipe.network, network, episodes, Explorer(luck, training.batch, share))
-
-    def _episodes(self, done: float) -> list[Episode]:
-        """Those of the batch, of all lessons in turn."""
-        training, first = self.recipe.training, self.batches * self.recipe.training.batch
-        grown = part(done, training.curriculum.until if training.curriculum else 0.0)
-        turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
-        drawn = [
-            draw_world(*turns[number % len(turns)], "training", training.seed, number)
-            for number in range(first, first + training.batch)
-        ]
-        hindsight = training.teacher.hindsight
-        return [Episode(world, luck, teacher_in(world, hindsight=hindsight)) for world, luck in drawn]
+    share: tuple[Probability, Probability] = (1.0, 0.1)
+    """Share of the episodes in which the teacher decides: at first, and from `until` on; `[1, 1]` is cloning."""
+    until: Probability = 0.25
+    """Part of the batches over which the share changes."""
+    hindsight: bool = False
+    """Whether, of the moves that are optimal on that map, only those count that are on the full map too, if any is."""
 
 
-def imitation_loss(rollout: Rollout) -> Tensor:
-    """-log of the probability of all right outputs together; mean over the decisions that have any."""
-    scores, targets = rollout.scores[rollout.judged], rollout.targets[rollout.judged]
-    right = scores.masked_fill(~targets, -torch.inf).logsumexp(1)
-    return (scores.logsumexp(1) - right).sum() / max(1, len(scores))
+class Curriculum(Settings):
+    """Maps that grow harder over the first batches."""
+
+    easy: dict[str, Any]
+    """Settings of the maps of every lesson at first: numbers grow to the lesson's own, the rest changes at the end."""
+    until: Probability = 0.3
+    """Part of the batches over which they grow."""
 
 
-def access_weight(network: Network) -> Tensor:
-    """Sum of the squared weights between a DNC's controller and its memory; 0 without one."""
-    weights = [tensor for name, tensor in network.named_parameters() if name.endswith("interface.weight")]
-    return torch.stack([weight.square().sum() for weight in weights]).sum() if weights else torch.zeros(())
+class Imitation(Settings):
+    """Imitation of the planner that has seen the same, where the network's own decisions lead it."""
 
+    batches: Positive
+    """How many, each of fresh maps."""
+    batch: Annotated[int, Field(ge=1, le=10_000)] = 128
+    """Episodes of a batch."""
+    teacher: Teacher = Teacher()
+    curriculum: Curriculum | None = None
+    optimiser: Literal["adam", "rmsprop"] = "adam"
+    rate: tuple[Rate, Rate] = (1e-3, 1e-4)
+    """Learning rate over the first half of the batches, and at the end of the second, over which it falls."""
+    clip: Rate = 5.0
+    """The gradient's norm at most."""
+    access_decay: Weight = 0.0
+    """Squared weights of a DNC's interface to its memory count as much in the loss (Khan et al. 2018, section 4.2)."""
+    noise: Weight = 0.0
+    """Standard deviation of the noise on the controller's output that it remembers."""
 
-def part(done: float, until: float) -> float:
-    """How much of a change that lasts until `until` is made, from 0 to 1."""
-    return min(1.0, done / until) if until else 1.0
-
-
-def rate(training: Training, done: float) -> float:
-    """The learning rate: constant over the first half, then falling by the same factor with every batch."""
-    first, last = training.rate
-    return float(first * (last / first) ** max(0.0, 2 * done - 1))
+    def student(self, recipe: Recipe) -> Student:
+        """A network before its first batch."""
+        student: Student = resolve_name("fogbench.learned.training.student:Imitator")(recipe, self)
+        return student

@@ -2,45 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from pydantic import Field
-
-from fogbench.worlds.settings import Positive, Probability, Settings
+from fogbench.worlds.settings import Positive, Settings
 from fogbench.worlds.types import MapFamily
 
 if TYPE_CHECKING:
     from fogbench.learned.policy import Policy
-
-Rate = Annotated[float, Field(gt=0)]
-"""A number above 0."""
-
-Weight = Annotated[float, Field(ge=0)]
-"""A number from 0."""
-
-
-class Teacher(Settings):
-    """Who decides while training: the teacher, or the network as it is (Ross, Gordon & Bagnell 2011, "DAgger").
-
-    The teacher takes an optimal move on the map that the agent has seen. Whoever decides, the network is taught which
-    moves are optimal there.
-    """
-
-    share: tuple[Probability, Probability] = (1.0, 0.1)
-    """Share of the episodes in which the teacher decides: at first, and from `until` on; `[1, 1]` is cloning."""
-    until: Probability = 0.25
-    """Part of the batches over which the share changes."""
-    hindsight: bool = False
-    """Whether, of the moves that are optimal on that map, only those count that are on the full map too, if any is."""
-
-
-class Curriculum(Settings):
-    """Maps that grow harder over the first batches."""
-
-    easy: dict[str, Any]
-    """Settings of the maps of every lesson at first: numbers grow to the lesson's own, the rest changes at the end."""
-    until: Probability = 0.3
-    """Part of the batches over which they grow."""
 
 
 class Validation(Settings):
@@ -52,27 +20,49 @@ class Validation(Settings):
     """Batches between two trials."""
 
 
-class Training(Settings):
-    """How a network is trained."""
+class Student(Protocol):
+    """**Protocol:** a network that learns batch by batch."""
 
-    batches: Positive
-    """How many, each of fresh maps."""
-    batch: Annotated[int, Field(ge=1, le=10_000)] = 128
-    """Episodes of a batch."""
-    teacher: Teacher = Teacher()
-    curriculum: Curriculum | None = None
-    optimiser: Literal["adam", "rmsprop"] = "adam"
-    rate: tuple[Rate, Rate] = (1e-3, 1e-4)
-    """Learning rate over the first half of the batches, and at the end of the second, over which it falls."""
-    clip: Rate = 5.0
-    """The gradient's norm at most."""
-    access_decay: Weight = 0.0
-    """Squared weights of a DNC's interface to its memory count as much in the loss (Khan et al. 2018, section 4.2)."""
-    noise: Weight = 0.0
-    """Standard deviation of the noise on the controller's output that it remembers."""
-    validation: Validation = Validation()
-    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0
-    """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
+    batches: int
+    """Learned from so far."""
+
+    @property
+    def network(self) -> Any:
+        """The network, with its weights as they are now."""
+
+    def learn(self) -> float:
+        """Learn from one more batch; the loss before.
+
+        Raises:
+            Mistake: the weights would be numbers no longer; they stay as they were.
+        """
+
+    def state(self) -> dict[str, Any]:
+        """All of it that changes, as PyTorch saves it."""
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Become as it was; the state may have more in it."""
+
+
+class Learner(Protocol):
+    """**Protocol:** the frozen settings of a way to learn; its fields are its block under `learning:` in a recipe.
+
+    One with a `curriculum` whose `easy` are settings of maps finds them read for each lesson (`Lesson.easy`).
+    """
+
+    @property
+    def batches(self) -> int:
+        """How many there are."""
+
+    def student(self, recipe: "Recipe") -> Student:
+        """A network before its first batch.
+
+        Raises:
+            Mistake: it cannot learn so; the text is one line.
+        """
+
+    def words(self) -> str:
+        """All that fixes how it learns, as text."""
 
 
 class Worlds(NamedTuple):
@@ -103,7 +93,10 @@ class Recipe:
     """They take turns: an episode has the lesson of its number, counted round and round."""
     held_out: Mapping[str, Worlds]
     """What the network is tried on while it learns, by the variants' names."""
-    training: Training
+    learning: Learner
+    validation: Validation
+    seed: int
+    """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
     def places(self) -> Iterator[tuple[str, Worlds, MapFamily]]:
         """All worlds by what they are called: each lesson's, with its maps at first and at last, and each variant's."""
@@ -115,9 +108,10 @@ class Recipe:
 
     def words(self) -> str:
         """All that fixes what a training leaves, as text."""
+        how = self.network.words(), self.learning.words(), self.validation.words(), str(self.seed)
         worlds = (
             part
             for place, (_, conditions), family in self.places()
             for part in (place, family.words(), conditions.words())
         )
-        return "\n".join((self.name, self.network.words(), self.training.words(), *worlds))
+        return "\n".join((self.name, *how, *worlds))

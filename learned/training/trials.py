@@ -58,7 +58,7 @@ def rehearse(recipe: Recipe) -> None:
             listed = family.tasks(worlds.conditions)
             world, _ = draw_world(worlds, family, "training", 0, 0)
             recipe.network.encoding().start(world.task)
-            teacher_in(world, hindsight=recipe.training.teacher.hindsight)
+            teacher_in(world)
         except Mistake as error:
             raise Mistake(f"{recipe.name}: {place}: {error}.") from None
         if listed is not None:
@@ -72,7 +72,7 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
     for name, worlds in recipe.held_out.items():
         drawn = [
             draw_world(worlds, worlds.family, "validation", 0, number)  # the same for every seed
-            for number in range(recipe.training.validation.episodes)
+            for number in range(recipe.validation.episodes)
         ]
         with torch.no_grad():
             episodes = [Episode(world, luck, teacher_in(world)) for world, luck in drawn]

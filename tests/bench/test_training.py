@@ -19,8 +19,7 @@ name: small
 network: {vin: {size: [5, 5], iterations: 2}}
 maps: {blobs: {size: 6, obstacles: [0, 2], obstacle_size: [1, 2]}}
 budget: {steps: 8}
-batches: 4
-batch: 2
+learning: {imitation: {batches: 4, batch: 2}}
 validation: {episodes: 3, every: 2}
 variants: {few: {}, many: {maps: {blobs: {obstacles: [3, 5]}}}}
 """
@@ -90,10 +89,10 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     assert err == (
         f"macn-gird: got no such file; expected a recipe file, or one of {shipped}. Did you mean macn-grid?\n"
     )
-    Path("small.yaml").write_text(RECIPE.replace("batch: 2", "batch: two"))
+    Path("small.yaml").write_text(RECIPE.replace("batch: 2}}", "batch: two}}"))
     assert train("small.yaml")[::2] == (
         2,
-        "small.yaml:6:8  batch: got two; expected a whole number from 1 to 10000.\n",
+        "small.yaml:5:43  learning.imitation.batch: got two; expected a whole number from 1 to 10000.\n",
     )
 
 

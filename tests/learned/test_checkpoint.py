@@ -36,7 +36,7 @@ def change(card: Path, **fields: Any) -> None:
 def wrong(place: Path) -> str:
     """What is wrong with a checkpoint."""
     with pytest.raises(Mistake) as caught:
-        read_weights(place, read_card(place), FORMS)
+        read_weights(place, read_card(place).sha256, FORMS)
     assert "\n" not in str(caught.value)
     return str(caught.value)
 
@@ -44,7 +44,7 @@ def wrong(place: Path) -> str:
 def test_what_was_written_is_read(place: Path) -> None:
     """All tensors, bit for bit, and the card."""
     card = read_card(place)
-    weights = read_weights(place, card, FORMS)
+    weights = read_weights(place, card.sha256, FORMS)
     for name, tensor in weighted(VIN).state_dict().items():
         assert np.array_equal(weights[name], tensor)
     assert (card.network, card.training) == ("Vin", {"batches": 3})

@@ -6,19 +6,22 @@ from typing import cast
 import pytest
 
 from fogbench import learned, worlds
-from fogbench.bench.reading.recipe import read_recipe
+from fogbench.bench.reading.page import with_blocks
+from fogbench.bench.reading.recipe import RecipePage, read_recipe
 from fogbench.bench.reading.scenario import ScenarioError
 from fogbench.learned.checkpoint import SHIPPED
 from fogbench.learned.macn import Macn
-from fogbench.learned.training.recipe import Teacher, Training
+from fogbench.learned.training.imitation import Imitation, Teacher
+from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.tunnel import Tunnel
 from fogbench.worlds.mistake import Mistake
 
 FAMILIES = f"one of {', '.join(worlds.FAMILIES)}, or a class as file.py:Class or module:Class"
 NETWORKS = f"one of {', '.join(learned.LEARNED)}, or a class as file.py:Class or module:Class"
-BLOCKS = "sensor, rules, tasks, budget"
-KEYS = f"{', '.join(Training.model_fields)}, name, about, network, maps, kind, {BLOCKS}, variants, lessons"
+KEYS = ", ".join(with_blocks(RecipePage, GridConditions).model_fields)
+LEARNERS = f"one of {', '.join(learned.LEARNERS)}, or a class as file.py:Class or module:Class"
+LEARNING = f"one of {', '.join(Imitation.model_fields)}"
 CHECKPOINTS = ", ".join(["none", *sorted(card.stem for card in SHIPPED.glob("*.json"))])
 SETTINGS = f"one of {', '.join(Macn.model_fields)}"
 
@@ -30,11 +33,13 @@ maps:
   blobs: {size: 16, obstacles: [0, 12], obstacle_size: [1, 3]}
 sensor: {radius: 3}
 budget: {steps: 40}
-curriculum: {easy: {obstacles: [2, 2]}, until: 0.3}
-teacher: {share: [1, 0.1], until: 0.25}
-batches: 100
-optimiser: adam
-rate: [1e-3, 1e-4]
+learning:
+  imitation:
+    curriculum: {easy: {obstacles: [2, 2]}, until: 0.3}
+    teacher: {share: [1, 0.1], until: 0.25}
+    batches: 100
+    optimiser: adam
+    rate: [1e-3, 1e-4]
 variants:
   32x32: {maps: {blobs: {size: 32}}, budget: {steps: 60}}
 seed: 2
@@ -96,8 +101,8 @@ BROKEN = [
         "  blob:",
         [
             f"5:3  maps: got blob; expected {FAMILIES}. Did you mean blobs?",
-            "14:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
-            "14:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "16:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
+            "16:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
         ],
     ),
     (
@@ -106,8 +111,8 @@ BROKEN = [
         [
             "1:1  maps: got nothing; expected a mapping.",
             f"4:1  got map; expected one of {KEYS}. Did you mean maps?",
-            "14:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
-            "14:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "16:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
+            "16:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
         ],
     ),
     (
@@ -115,44 +120,72 @@ BROKEN = [
         "{obstacle: [2, 2]}",
         [
             (
-                "8:21  curriculum.easy: got obstacle; "
+                "10:25  learning.imitation.curriculum.easy: got obstacle; "
                 "expected one of size, obstacles, obstacle_size. Did you mean obstacles?"
             ),
         ],
     ),
-    ("[2, 2]", "[3, 2]", ["8:32  curriculum.easy.obstacles: got [3, 2]; expected two numbers, the smaller first."]),
-    ("[2, 2]", "few", ["8:32  curriculum.easy.obstacles: got few; expected two whole numbers of at least 0."]),
-    ("{obstacles: [2, 2]}", "3", ["8:20  curriculum.easy: got 3; expected a mapping."]),
-    ("until: 0.3", "until: 3", ["8:48  curriculum.until: got 3; expected a number from 0 to 1."]),
-    ("share: [1, 0.1]", "share: 1", ["9:18  teacher.share: got 1; expected two numbers from 0 to 1."]),
-    ("share: [1, 0.1]", "share: [1, 2]", ["9:22  teacher.share[1]: got 2; expected a number from 0 to 1."]),
-    ("share: [1, 0.1]", "hindsight: 2", ["9:22  teacher.hindsight: got 2; expected true or false."]),
+    (
+        "[2, 2]",
+        "[3, 2]",
+        ["10:36  learning.imitation.curriculum.easy.obstacles: got [3, 2]; expected two numbers, the smaller first."],
+    ),
+    (
+        "[2, 2]",
+        "few",
+        ["10:36  learning.imitation.curriculum.easy.obstacles: got few; expected two whole numbers of at least 0."],
+    ),
+    ("{obstacles: [2, 2]}", "3", ["10:24  learning.imitation.curriculum.easy: got 3; expected a mapping."]),
+    ("until: 0.3", "until: 3", ["10:52  learning.imitation.curriculum.until: got 3; expected a number from 0 to 1."]),
+    (
+        "share: [1, 0.1]",
+        "share: 1",
+        ["11:22  learning.imitation.teacher.share: got 1; expected two numbers from 0 to 1."],
+    ),
+    (
+        "share: [1, 0.1]",
+        "share: [1, 2]",
+        ["11:26  learning.imitation.teacher.share[1]: got 2; expected a number from 0 to 1."],
+    ),
+    (
+        "share: [1, 0.1]",
+        "hindsight: 2",
+        ["11:26  learning.imitation.teacher.hindsight: got 2; expected true or false."],
+    ),
     (
         "batches: 100",
-        "batches: 100\nbatch: 10001",
-        ["11:8  batch: got 10001; expected a whole number from 1 to 10000."],
+        "batches: 100\n    batch: 10001",
+        ["13:12  learning.imitation.batch: got 10001; expected a whole number from 1 to 10000."],
     ),
-    ("batches: 100", "batches: 0", ["10:10  batches: got 0; expected a whole number of at least 1."]),
+    (
+        "batches: 100",
+        "batches: 0",
+        ["12:14  learning.imitation.batches: got 0; expected a whole number of at least 1."],
+    ),
     (
         "batches: 100",
         "minutes: 3",
         [
-            "1:1  batches: got nothing; expected a whole number of at least 1.",
-            f"10:1  got minutes; expected one of {KEYS}.",
+            "10:5  learning.imitation.batches: got nothing; expected a whole number of at least 1.",
+            f"12:5  learning.imitation: got minutes; expected {LEARNING}.",
         ],
     ),
-    ("adam", "adamw", ["11:12  optimiser: got adamw; expected one of adam, rmsprop. Did you mean adam?"]),
-    ("rate: [1e-3, 1e-4]", "rate: 1e-3", ["12:7  rate: got 1e-3; expected two numbers above 0."]),
-    ("rate: [1e-3, 1e-4]", "rate: [0, 1e-4]", ["12:8  rate[0]: got 0; expected a number above 0."]),
+    (
+        "adam",
+        "adamw",
+        ["13:16  learning.imitation.optimiser: got adamw; expected one of adam, rmsprop. Did you mean adam?"],
+    ),
+    ("rate: [1e-3, 1e-4]", "rate: 1e-3", ["14:11  learning.imitation.rate: got 1e-3; expected two numbers above 0."]),
+    ("rate: [1e-3, 1e-4]", "rate: [0, 1e-4]", ["14:12  learning.imitation.rate[0]: got 0; expected a number above 0."]),
     (
         "size: 32",
         "size: many",
-        ["14:32  variants.32x32.maps.blobs.size: got many; expected a whole number of at least 2."],
+        ["16:32  variants.32x32.maps.blobs.size: got many; expected a whole number of at least 2."],
     ),
     (
         "32x32: {maps",
         "32x32: {agents: [astar], maps",
-        ["14:11  variants.32x32: got agents; expected one of maps, kind, sensor, rules, tasks, budget."],
+        ["16:11  variants.32x32: got agents; expected one of maps, kind, sensor, rules, tasks, budget."],
     ),
     ("radius: 3", "radius: 0", ["6:18  sensor.radius: got 0; expected a whole number of at least 1."]),
     (
@@ -160,27 +193,40 @@ BROKEN = [
         "radius: ${FOG_NO}",
         ["6:19  got broken YAML (expected ',' or '}', but got '{'); expected one YAML document."],
     ),
-    ("seed: 2", "seed: -1", ["15:7  seed: got -1; expected a whole number from 0 to 4294967295."]),
-    ("seed: 2", "lessons: 32x32", ["15:10  lessons: got 32x32; expected a list."]),
-    ("seed: 2", "lessons: [{32x32: 1}]", ["15:11  lessons[0]: got {32x32: 1}; expected text."]),
+    ("seed: 2", "seed: -1", ["17:7  seed: got -1; expected a whole number from 0 to 4294967295."]),
+    ("seed: 2", "lessons: 32x32", ["17:10  lessons: got 32x32; expected a list."]),
+    ("seed: 2", "lessons: [{32x32: 1}]", ["17:11  lessons[0]: got {32x32: 1}; expected text."]),
     (
         "seed: 2",
         "lessons: [32x32, 32x23]",
-        ["15:18  lessons[1]: got 32x23; expected one of 32x32. Did you mean 32x32?"],
+        ["17:18  lessons[1]: got 32x23; expected one of 32x32. Did you mean 32x32?"],
     ),
     (
         "{blobs: {size: 32}}, budget: {steps: 60}}",
         "{tunnel: {length: [4, 9]}}}\nlessons: [32x32]",
         [
-            (f"8:21  curriculum.easy: got obstacles; expected one of {', '.join(Tunnel.model_fields)}."),
+            (
+                "10:25  learning.imitation.curriculum.easy: got obstacles; "
+                f"expected one of {', '.join(Tunnel.model_fields)}."
+            ),
         ],
     ),
-    ("seed: 2", "episodes: 3", [f"15:1  got episodes; expected one of {KEYS}."]),
+    ("seed: 2", "episodes: 3", [f"17:1  got episodes; expected one of {KEYS}."]),
+    (
+        "seed: 2",
+        "rate: [1e-3, 1e-4]",
+        ["17:1  got rate; expected learning: {imitation: {rate: ...}}. Did you mean learning?"],
+    ),
+    (
+        "  imitation:",
+        "  imitatoin:",
+        [f"9:3  learning: got imitatoin; expected {LEARNERS}. Did you mean imitation?"],
+    ),
     ("budget: {steps: 40}\n", "", ["1:1  budget: got nothing; expected a mapping."]),
     (
-        "optimiser: adam",
+        "seed: 2",
         "validation: {every: 0}",
-        ["11:21  validation.every: got 0; expected a whole number of at least 1."],
+        ["17:21  validation.every: got 0; expected a whole number of at least 1."],
     ),
 ]
 
@@ -199,15 +245,15 @@ def test_the_recipe_is_read() -> None:
     assert recipe.held_out["32x32"].family == full.model_copy(update={"size": 32})
     assert recipe.held_out["32x32"].conditions.budget.steps == 60
     assert recipe.held_out["32x32"].conditions.sensor.radius == 3
-    training = recipe.training
-    assert (training.batches, training.rate, training.seed) == (100, (1e-3, 1e-4), 2)
-    assert training.teacher == Teacher(share=(1, 0.1), until=0.25)
+    learning = cast(Imitation, recipe.learning)
+    assert (learning.batches, learning.rate, recipe.seed) == (100, (1e-3, 1e-4), 2)
+    assert learning.teacher == Teacher(share=(1, 0.1), until=0.25)
 
 
 def test_little_has_to_be_said() -> None:
     """Without a curriculum all maps are full ones, and without variants the network is tried where it learns."""
     maps = "{blobs: {size: 8, obstacles: [0, 2], obstacle_size: [1, 2]}}"
-    text = f"name: least\nnetwork: macn\nmaps: {maps}\nbudget: {{steps: 20}}\nbatches: 3\n"
+    text = f"name: least\nnetwork: macn\nmaps: {maps}\nbudget: {{steps: 20}}\nlearning: {{imitation: {{batches: 3}}}}\n"
     recipe = read_recipe(text, Path("r.yaml"))
     ((worlds, easy),) = recipe.lessons
     assert easy == worlds.family

@@ -6,8 +6,9 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 import torch
@@ -19,6 +20,7 @@ from fogbench.learned.agent import weighted
 from fogbench.learned.policy import Policy
 from fogbench.learned.training import course as training
 from fogbench.learned.training.course import Course
+from fogbench.learned.training.imitation import Imitation
 from fogbench.learned.training.recipe import Recipe
 from fogbench.worlds.mistake import Mistake
 
@@ -29,11 +31,13 @@ maps: {blobs: {size: 6, obstacles: [0, 6], obstacle_size: [1, 2]}}
 sensor: {radius: 2, false_readings: 0.05}
 rules: {collision: blocked, slip: 0.1}
 budget: {steps: 8}
-curriculum: {easy: {obstacles: [0, 1]}, until: 0.5}
-batches: BATCHES
-batch: 4
-noise: 0.05
-access_decay: 1e-4
+learning:
+  imitation:
+    curriculum: {easy: {obstacles: [0, 1]}, until: 0.5}
+    batches: BATCHES
+    batch: 4
+    noise: 0.05
+    access_decay: 1e-4
 validation: {episodes: 10, every: 5}
 seed: 3
 """
@@ -45,8 +49,8 @@ def recipe(batches: int = 12, **changes: Any) -> Recipe:
     """The tiny recipe."""
     text = TEXT.replace("BATCHES", str(batches))
     for key, value in changes.items():
-        (line,) = [line for line in text.splitlines() if line.startswith(f"{key}:")]
-        text = text.replace(line, f"{key}: {value}")
+        (line,) = [line for line in text.splitlines() if line.lstrip().startswith(f"{key}:")]
+        text = text.replace(line, line.replace(line.lstrip(), f"{key}: {value}"))
     return read_recipe(text, Path("tiny.yaml"))
 
 
@@ -283,8 +287,8 @@ def test_a_shipped_recipe_trains(path: Path, tmp_path: Path) -> None:
     """It has the name of its file, and a batch of it changes every weight that is used."""
     shipped = read_recipe(path.read_text(), path)
     assert shipped.name == path.stem
-    object.__setattr__(shipped, "training", shipped.training.model_copy(update={"batch": 2}))
-    student = Course(shipped, tmp_path, {}).student
+    shipped = replace(shipped, learning=cast(Imitation, shipped.learning).model_copy(update={"batch": 2}))
+    student: Any = Course(shipped, tmp_path, {}).student
     before = [weight.clone() for weight in student.network.state_dict().values()]
     student.learn()
     after = student.network.state_dict().values()

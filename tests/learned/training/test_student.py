@@ -15,9 +15,10 @@ from fogbench.learned.agent import weighted
 from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.macn import Macn
 from fogbench.learned.training.exploring import Explorer, Noisy, pick
-from fogbench.learned.training.imitation import Student, access_weight, imitation_loss, part, rate
-from fogbench.learned.training.recipe import Curriculum, Lesson, Recipe, Teacher, Training, Validation, Worlds
+from fogbench.learned.training.imitation import Curriculum, Imitation, Teacher
+from fogbench.learned.training.recipe import Lesson, Recipe, Validation, Worlds
 from fogbench.learned.training.rollout import Episode, Moment, Rollout, roll
+from fogbench.learned.training.student import access_weight, imitation_loss, part, rate
 from fogbench.learned.training.trials import draw_world, rehearse
 from fogbench.learned.training.trials import validate as tried
 from fogbench.planners.grid_judge import GridJudge, Hindsight
@@ -31,15 +32,20 @@ SMALL = Macn(checkpoint="none", size=(7, 7), features=32, hidden=32, memory_rows
 MAPS = Blobs(size=6, obstacles=(2, 6), obstacle_size=(1, 2))
 
 
+def learns(recipe: Recipe) -> Any:
+    """What learns by a recipe."""
+    return recipe.learning.student(recipe)
+
+
 @pytest.fixture
 def recipe(conditions: Callable[..., Any]) -> Callable[..., Recipe]:
     """Makes a recipe on maps of 6x6 cells of the fields of its network and of its training."""
 
-    def make(network: dict[str, Any] | None = None, **fields: Any) -> Recipe:
+    def make(network: dict[str, Any] | None = None, seed: int = 0, **fields: Any) -> Recipe:
         worlds = Worlds(MAPS, conditions(steps=12, radius=2))
-        training = Training(**{"batches": 40, "batch": 16, "validation": Validation(episodes=50), **fields})
-        policy = SMALL.model_copy(update={**(network or {}), "seed": training.seed})
-        return Recipe("small", "", "", policy, (Lesson(worlds, MAPS),), {"all": worlds}, training)
+        learning = Imitation(**{"batches": 40, "batch": 16, **fields})
+        policy, lessons = SMALL.model_copy(update={**(network or {}), "seed": seed}), (Lesson(worlds, MAPS),)
+        return Recipe("small", "", "", policy, lessons, {"all": worlds}, learning, Validation(episodes=50), seed)
 
     return make
 
@@ -106,7 +112,7 @@ def test_choices_do_not_depend_on_who_has_ended() -> None:
 
 def test_the_rate_falls_over_the_second_half() -> None:
     """It is the first number up to the half, the geometric mean at three quarters, nearly the last at the end."""
-    training = Training(batches=100, rate=(1e-2, 1e-4))
+    training = Imitation(batches=100, rate=(1e-2, 1e-4))
     assert [rate(training, done) for done in (0, 0.5, 0.75, 1)] == pytest.approx([1e-2, 1e-2, 1e-3, 1e-4])
 
 
@@ -130,7 +136,7 @@ def test_decay_shrinks_the_interface(recipe: Callable[..., Recipe]) -> None:
     """Ten batches with the decay leave a smaller interface than without it."""
     sizes = []
     for decay in (0.0, 0.1):
-        student = Student(recipe(access_decay=decay))
+        student = learns(recipe(access_decay=decay))
         for _ in range(10):
             student.learn()
         sizes.append(access_weight(student.network).item())
@@ -184,7 +190,7 @@ def test_the_teacher_and_the_rate_give_way_over_the_batches(
     recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A training of four batches decides and descends by what its recipe says of each."""
-    student = Student(recipe(batches=4, teacher=Teacher(share=(1, 0.2), until=0.5), rate=(1e-2, 1e-4)))
+    student = learns(recipe(batches=4, teacher=Teacher(share=(1, 0.2), until=0.5), rate=(1e-2, 1e-4)))
     shares, rates = list[float](), list[float]()
 
     class Spy(Explorer):
@@ -192,7 +198,7 @@ def test_the_teacher_and_the_rate_give_way_over_the_batches(
             shares.append(share)
             super().__init__(luck, episodes, share)
 
-    monkeypatch.setattr("fogbench.learned.training.imitation.Explorer", Spy)
+    monkeypatch.setattr("fogbench.learned.training.student.Explorer", Spy)
     for _ in range(4):
         student.learn()
         rates.append(student.optimiser.param_groups[0]["lr"])
@@ -208,11 +214,11 @@ def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], mon
         kinds.append({type(episode.teacher) for episode in arguments[2]})
         return roll(*arguments)
 
-    monkeypatch.setattr("fogbench.learned.training.imitation.roll", spy)
+    monkeypatch.setattr("fogbench.learned.training.student.roll", spy)
     monkeypatch.setattr("fogbench.learned.training.trials.roll", spy)
     for hindsight in (False, True):
         taught = recipe(batches=1, teacher=Teacher(hindsight=hindsight))
-        Student(taught).learn()
+        learns(taught).learn()
         tried(taught, SMALL.network())
     assert kinds == [{GridJudge}, {GridJudge}, {Hindsight}, {GridJudge}]
 
@@ -220,12 +226,12 @@ def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], mon
 @pytest.mark.parametrize(("name", "kind"), [("adam", torch.optim.Adam), ("rmsprop", torch.optim.RMSprop)])
 def test_the_optimiser_is_the_recipe_s(name: str, kind: type, recipe: Callable[..., Recipe]) -> None:
     """The paper's is RMSProp, ours Adam."""
-    assert type(Student(recipe(optimiser=name)).optimiser) is kind
+    assert type(learns(recipe(optimiser=name)).optimiser) is kind
 
 
 def test_a_gradient_is_no_longer_than_allowed(recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch) -> None:
     """All that the optimiser meets together has the norm of the recipe's clip, however steep the loss."""
-    student, norms = Student(recipe(clip=0.01)), list[float]()
+    student, norms = learns(recipe(clip=0.01)), list[float]()
 
     def step() -> None:
         gradients = [weight.grad.norm() for weight in student.network.parameters() if weight.grad is not None]
@@ -238,7 +244,7 @@ def test_a_gradient_is_no_longer_than_allowed(recipe: Callable[..., Recipe], mon
 
 def test_weights_that_grow_beyond_all_numbers_are_told(recipe: Callable[..., Recipe]) -> None:
     """Before they are changed once more: what was learned until then is left."""
-    student = Student(recipe(rate=(1e30, 1e30)))
+    student = learns(recipe(rate=(1e30, 1e30)))
     student.learn()
     before = [weight.clone() for weight in student.network.parameters()]
     with pytest.raises(Mistake) as caught:
@@ -287,13 +293,13 @@ def test_a_curriculum_is_played_from_its_beginning(
     """At first all maps are as empty as the easy family; after its part of the batches they are full."""
     easy = Blobs(size=6, obstacles=(0, 0), obstacle_size=(1, 1))
     made = recipe(batches=4, curriculum=Curriculum(easy={}, until=0.5))
-    student, walls = Student(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
+    student, walls = learns(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
 
     def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
         walls.append(float(np.mean([cast(Any, episode.world).blocked.mean() for episode in episodes])))
         return roll(settings, network, episodes, choose)
 
-    monkeypatch.setattr("fogbench.learned.training.imitation.roll", rolled)
+    monkeypatch.setattr("fogbench.learned.training.student.roll", rolled)
     for _ in range(4):
         student.learn()
     assert walls[0] == 0
@@ -306,7 +312,7 @@ def test_lessons_take_turns(
     """Over the batches each episode has the lesson of its number, with its own maps, sensor and budget."""
     made, wide = recipe(batch=4), Blobs(size=9, obstacles=(9, 9), obstacle_size=(1, 1))
     other = Worlds(wide, conditions(steps=20, radius=3))
-    student = Student(replace(made, lessons=(*made.lessons, Lesson(other, wide), *made.lessons)))
+    student = learns(replace(made, lessons=(*made.lessons, Lesson(other, wide), *made.lessons)))
     sizes, budgets, sides = list[int](), list[int](), list[int]()
 
     def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
@@ -316,7 +322,7 @@ def test_lessons_take_turns(
         sides.extend(len(cast(Any, episode.teacher).observation.view) for episode in episodes)
         return rollout
 
-    monkeypatch.setattr("fogbench.learned.training.imitation.roll", rolled)
+    monkeypatch.setattr("fogbench.learned.training.student.roll", rolled)
     for _ in range(2):
         student.learn()
     assert sizes == [6, 9, 6, 6, 9, 6, 6, 9]
@@ -326,7 +332,7 @@ def test_lessons_take_turns(
 
 def test_a_network_learns(recipe: Callable[..., Recipe]) -> None:
     """A hundred small batches lead a network without memory from failing nearly always to reaching most goals."""
-    student = Student(recipe({"memory": "feedforward"}, batches=100, batch=32, rate=(3e-3, 3e-4)))
+    student = learns(recipe({"memory": "feedforward"}, batches=100, batch=32, rate=(3e-3, 3e-4)))
     before = tried(student.recipe, student.network)["all"]
     losses = [student.learn() for _ in range(100)]
     after = tried(student.recipe, student.network)["all"]

@@ -1,0 +1,121 @@
+"""Imitation of the planner that has seen the same: a network learns which moves are right on its own known map.
+
+It learns where its own decisions lead it (Ross, Gordon & Bagnell 2011, "DAgger"), from fresh maps in every batch. All
+luck of a batch comes from streams of its number, so a training goes on from its weights and that number alone.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from fogbench.learned.agent import load
+from fogbench.learned.networks.network import Network
+from fogbench.learned.training.curriculum import eased
+from fogbench.learned.training.exploring import Explorer, Noisy
+from fogbench.learned.training.imitation import Imitation
+from fogbench.learned.training.recipe import Recipe
+from fogbench.learned.training.rollout import Episode, Rollout, roll
+from fogbench.learned.training.trials import draw_world, teacher_in
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.streams import digest, stream
+
+OPTIMISERS = {"adam": torch.optim.Adam, "rmsprop": torch.optim.RMSprop}
+
+
+class Imitator:
+    """A network that learns batch by batch."""
+
+    def __init__(self, recipe: Recipe, learning: Imitation) -> None:
+        """Before the first batch, with fresh weights or those of the recipe's checkpoint.
+
+        Raises:
+            Mistake: hindsight is to teach where it cannot.
+        """
+        for worlds, easy in recipe.lessons if learning.teacher.hindsight else ():
+            teacher_in(draw_world(worlds, easy, "training", 0, 0).world, hindsight=True)
+        self.recipe, self.learning = recipe, learning
+        self.network = load(recipe.network)
+        self.optimiser = OPTIMISERS[learning.optimiser](self.network.parameters())
+        self.batches = 0
+        """Learned from so far."""
+
+    def learn(self) -> float:
+        """Play one more batch and learn from it; the loss before.
+
+        Raises:
+            Mistake: the weights would be numbers no longer; they stay as they were.
+        """
+        done = self.batches / self.learning.batches
+        rollout = self._play(done)
+        loss = imitation_loss(rollout)
+        (loss + self.learning.access_decay * access_weight(self.network)).backward()  # type: ignore[no-untyped-call]
+        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.learning.clip)
+        if not norm.isfinite():
+            place = f"{self.recipe.name}, batch {self.batches + 1}"
+            raise Mistake(f"{place}: got a gradient of {norm.item()}; expected a smaller rate.")
+        for group in self.optimiser.param_groups:
+            group["lr"] = rate(self.learning, done)
+        self.optimiser.step()
+        self.optimiser.zero_grad()
+        self.batches += 1
+        return loss.item()
+
+    def state(self) -> dict[str, Any]:
+        """All of it that changes."""
+        weights, optimiser = self.network.state_dict(), self.optimiser.state_dict()
+        return {"network": weights, "optimiser": optimiser, "batches": self.batches}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Become as it was."""
+        self.network.load_state_dict(state["network"])
+        self.optimiser.load_state_dict(state["optimiser"])
+        self.batches = state["batches"]
+
+    def _play(self, done: float) -> Rollout:
+        recipe, learning = self.recipe, self.learning
+        episodes = self._episodes(done)
+        luck = stream(recipe.seed, recipe.lessons[0].worlds.family.words(), "training moves", self.batches)
+        network = self.network
+        if learning.noise:
+            network = Noisy(network, learning.noise, int(digest(recipe.seed, "noise", self.batches)[:8], 16))
+        first_share, last_share = learning.teacher.share
+        share = first_share + part(done, learning.teacher.until) * (last_share - first_share)
+        return roll(recipe.network, network, episodes, Explorer(luck, learning.batch, share))
+
+    def _episodes(self, done: float) -> list[Episode]:
+        """Those of the batch, of all lessons in turn."""
+        learning, first = self.learning, self.batches * self.learning.batch
+        grown = part(done, learning.curriculum.until if learning.curriculum else 0.0)
+        turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
+        drawn = [
+            draw_world(*turns[number % len(turns)], "training", self.recipe.seed, number)
+            for number in range(first, first + learning.batch)
+        ]
+        hindsight = learning.teacher.hindsight
+        return [Episode(world, luck, teacher_in(world, hindsight=hindsight)) for world, luck in drawn]
+
+
+def imitation_loss(rollout: Rollout) -> Tensor:
+    """-log of the probability of all right outputs together; mean over the decisions that have any."""
+    scores, targets = rollout.scores[rollout.judged], rollout.targets[rollout.judged]
+    right = scores.masked_fill(~targets, -torch.inf).logsumexp(1)
+    return (scores.logsumexp(1) - right).sum() / max(1, len(scores))
+
+
+def access_weight(network: Network) -> Tensor:
+    """Sum of the squared weights between a DNC's controller and its memory; 0 without one."""
+    weights = [tensor for name, tensor in network.named_parameters() if name.endswith("interface.weight")]
+    return torch.stack([weight.square().sum() for weight in weights]).sum() if weights else torch.zeros(())
+
+
+def part(done: float, until: float) -> float:
+    """How much of a change that lasts until `until` is made, from 0 to 1."""
+    return min(1.0, done / until) if until else 1.0
+
+
+def rate(learning: Imitation, done: float) -> float:
+    """The learning rate: constant over the first half, then falling by the same factor with every batch."""
+    first, last = learning.rate
+    return float(first * (last / first) ** max(0.0, 2 * done - 1))
