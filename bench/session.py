@@ -20,7 +20,7 @@ from fogbench.bench.reporting.report import READS, print_tables, summary, write_
 from fogbench.bench.reporting.sections import comparisons
 from fogbench.bench.reporting.tables import markdown, print_table
 from fogbench.bench.several import each, read_all, say
-from fogbench.worlds.files import put
+from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake, unknown
 from fogbench.worlds.types import Outcome
 
@@ -65,7 +65,7 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
         lines = comparisons(summary(frame, scenario), scenario)
         print_table("Paired", lines, console)
         page = folder / ("-".join(["against", *re.findall(r"\w+", label)]) + ".md")
-        put(page, f"# {scenario.name}, against {label}\n\n{markdown(lines)}".encode())
+        write(page, f"# {scenario.name}, against {label}\n\n{markdown(lines)}".encode())
         say(f"The table is in {page}", console)
         _say_differences(scenario, folder, console)
 

@@ -17,7 +17,8 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from fogbench.learned.shapes import Shapes
-from fogbench.worlds.files import put, sha256
+from fogbench.worlds import files
+from fogbench.worlds.files import sha256
 from fogbench.worlds.mistake import Mistake, near, one_of
 from fogbench.worlds.types import Array
 
@@ -184,5 +185,5 @@ def write(place: Path, network: str, settings: dict[str, Any], weights: Mapping[
     """Write a file of weights and its card, each whole or not at all."""
     contents = save({name: np.ascontiguousarray(array) for name, array in weights.items()})
     card = Card(network=network, settings=settings, sha256=sha256(contents), training=training)
-    put(place, contents)
-    put(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")
+    files.write(place, contents)
+    files.write(place.with_suffix(".json"), json.dumps(card.model_dump(), indent=2).encode() + b"\n")

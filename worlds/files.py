@@ -23,7 +23,7 @@ def read(path: Path) -> bytes:
         raise MapError(f"{path}: got {(error.strerror or str(error)).lower()}; expected a file to read") from None
 
 
-def put(path: Path, contents: bytes | memoryview) -> None:
+def write(path: Path, contents: bytes | memoryview) -> None:
     """Write a whole file or none: to a dot-name, to the disk, then renamed.
 
     Raises:

@@ -16,7 +16,7 @@ from pydantic import BaseModel, Field
 
 from fogbench.bench.playing.keys import packages
 from fogbench.bench.playing.packages import difference, installed
-from fogbench.bench.playing.store import StoreError, put
+from fogbench.bench.playing.store import StoreError, write
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
 
@@ -119,7 +119,7 @@ def noted(folder: Path, scenario: Scenario, workers: int) -> Iterator[None]:
 
 
 def _write(path: Path, run: dict[str, Any]) -> None:
-    put(path, json.dumps(run, indent=2, ensure_ascii=False).encode())
+    write(path, json.dumps(run, indent=2, ensure_ascii=False).encode())
 
 
 def _now() -> str:

@@ -170,7 +170,7 @@ class Recorder:
         if self.rows:
             sink = pa.BufferOutputStream()
             pq.write_table(table(self.rows, self.covariates), sink)
-            put(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
+            write(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
             # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
             self.part += 1
             self.rows = []
@@ -204,14 +204,14 @@ def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
             recorder.flush()
 
 
-def put(path: Path, content: bytes | pa.Buffer) -> None:
+def write(path: Path, content: bytes | pa.Buffer) -> None:
     """Write a whole file or none.
 
     Raises:
         StoreError: it cannot be written.
     """
     try:
-        files.put(path, memoryview(content))
+        files.write(path, memoryview(content))
     except OSError as error:
         raise _unwritable(path, error) from None
 

@@ -17,8 +17,8 @@ import torch
 
 from fogbench.learned import checkpoint
 from fogbench.learned.training.recipe import Recipe
-from fogbench.learned.training.trials import rehearse, validate
-from fogbench.worlds.files import put
+from fogbench.learned.training.trials import refuse_unplayable, validate
+from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.streams import digest
 
@@ -54,7 +54,7 @@ class Course:
         Raises:
             Mistake: a world of the recipe cannot be played, or the folder holds the state of another training.
         """
-        rehearse(recipe)
+        refuse_unplayable(recipe)
         folder.mkdir(parents=True, exist_ok=True)
         self.recipe, self.folder, self.origin = recipe, folder, origin
         self.student = recipe.learning.student(recipe)
@@ -129,10 +129,10 @@ class Course:
             **{name: getattr(self, name) for name in KEPT},
         }
         lines = "".join(json.dumps(trial) + "\n" for trial in self.trials)
-        put(self.folder / "log.jsonl", lines.encode())  # first: what the state has, the log has too
+        write(self.folder / "log.jsonl", lines.encode())  # first: what the state has, the log has too
         contents = io.BytesIO()
         torch.save(state, contents)
-        put(self._state, contents.getvalue())
+        write(self._state, contents.getvalue())
 
     def _load(self) -> None:
         try:

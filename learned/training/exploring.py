@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from fogbench.learned.networks.network import Network
-from fogbench.learned.training.rollout import Moment
+from fogbench.learned.training.rollout import Turn
 from fogbench.worlds.types import Array
 
 
@@ -22,13 +22,13 @@ class Explorer:
         self.luck = luck
         self.led = luck.random(episodes) < share
 
-    def __call__(self, moment: Moment) -> Array:
+    def __call__(self, turn: Turn) -> Array:
         """The outputs [b]; the teacher takes any of the right ones."""
-        chances = self.luck.random((2, len(self.led)))[:, moment.episodes]  # [2, b]
-        own = pick(np.exp(moment.scores - moment.scores.max(1, keepdims=True)), chances[0])
-        blocked = ~np.take_along_axis(moment.open, own[:, None], 1)[:, 0]
-        led = (self.led[moment.episodes] | blocked) & moment.targets.any(1)
-        outputs: Array = np.where(led, pick(moment.targets, chances[1]), own)
+        chances = self.luck.random((2, len(self.led)))[:, turn.episodes]  # [2, b]
+        own = pick(np.exp(turn.scores - turn.scores.max(1, keepdims=True)), chances[0])
+        blocked = ~np.take_along_axis(turn.open, own[:, None], 1)[:, 0]
+        led = (self.led[turn.episodes] | blocked) & turn.targets.any(1)
+        outputs: Array = np.where(led, pick(turn.targets, chances[1]), own)
         return outputs
 
 

@@ -23,7 +23,7 @@ from fogbench.planners.judging import Teacher
 from fogbench.worlds.types import Array, World
 
 
-class Moment(NamedTuple):
+class Turn(NamedTuple):
     """One step of the episodes that go on."""
 
     step: int
@@ -40,7 +40,7 @@ class Moment(NamedTuple):
 class Chooser(Protocol):
     """**Protocol:** what decides by the scores of a network."""
 
-    def __call__(self, moment: Moment) -> Array:
+    def __call__(self, turn: Turn) -> Array:
         """The outputs [b] int64."""
 
 
@@ -67,7 +67,7 @@ class Rollout(NamedTuple):
         return self.judged & ~right
 
 
-class Episode:
+class Run:
     """One world, and who teaches there."""
 
     def __init__(self, world: World, luck: np.random.Generator, teacher: Teacher) -> None:
@@ -94,7 +94,7 @@ class Episode:
         return not (step.reached or step.collided or self.steps >= self.world.task.budget.steps)
 
 
-def roll(settings: Policy, network: Network, episodes: Sequence[Episode], choose: Chooser) -> Rollout:
+def roll_out(settings: Policy, network: Network, episodes: Sequence[Run], choose: Chooser) -> Rollout:
     """Play episodes to their ends.
 
     Raises:
@@ -108,8 +108,8 @@ def roll(settings: Policy, network: Network, episodes: Sequence[Episode], choose
         targets = np.stack([episode.look(viewpoint) for episode, viewpoint in playing])  # [b, A]
         inputs = encoding.encode([viewpoint for _, viewpoint in playing])
         scores, state = network(inputs.to(settings.device), state)
-        moment = Moment(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
-        outputs = choose(moment)
+        turn = Turn(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
+        outputs = choose(turn)
         decisions.append((scores, torch.from_numpy(targets), torch.from_numpy(outputs)))
         steps = zip(playing, outputs.tolist(), strict=True)
         goes_on = np.array([episode.step(viewpoint, output) for (episode, viewpoint), output in steps])
@@ -121,7 +121,7 @@ def roll(settings: Policy, network: Network, episodes: Sequence[Episode], choose
     return Rollout(scores, right.to(scores.device), done.to(scores.device), reached)
 
 
-def greedy(moment: Moment) -> Array:
+def greedy(turn: Turn) -> Array:
     """The outputs of the highest scores; of equals, the first: as a policy decides in an episode."""
-    best: Array = moment.scores.argmax(1)
+    best: Array = turn.scores.argmax(1)
     return best

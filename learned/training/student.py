@@ -16,7 +16,7 @@ from fogbench.learned.training.curriculum import eased
 from fogbench.learned.training.exploring import Explorer, Noisy
 from fogbench.learned.training.imitation import Imitation
 from fogbench.learned.training.recipe import Recipe
-from fogbench.learned.training.rollout import Episode, Rollout, roll
+from fogbench.learned.training.rollout import Rollout, Run, roll_out
 from fogbench.learned.training.trials import draw_world, teacher_in
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.streams import digest, stream
@@ -82,9 +82,9 @@ class Imitator:
             network = Noisy(network, learning.noise, int(digest(recipe.seed, "noise", self.batches)[:8], 16))
         first_share, last_share = learning.teacher.share
         share = first_share + part(done, learning.teacher.until) * (last_share - first_share)
-        return roll(recipe.network, network, episodes, Explorer(luck, learning.batch, share))
+        return roll_out(recipe.network, network, episodes, Explorer(luck, learning.batch, share))
 
-    def _episodes(self, done: float) -> list[Episode]:
+    def _episodes(self, done: float) -> list[Run]:
         """Those of the batch, of all lessons in turn."""
         learning, first = self.learning, self.batches * self.learning.batch
         grown = part(done, learning.curriculum.until if learning.curriculum else 0.0)
@@ -94,7 +94,7 @@ class Imitator:
             for number in range(first, first + learning.batch)
         ]
         hindsight = learning.teacher.hindsight
-        return [Episode(world, luck, teacher_in(world, hindsight=hindsight)) for world, luck in drawn]
+        return [Run(world, luck, teacher_in(world, hindsight=hindsight)) for world, luck in drawn]
 
 
 def imitation_loss(rollout: Rollout) -> Tensor:

@@ -7,7 +7,7 @@ import torch
 
 from fogbench.learned.networks.network import Network
 from fogbench.learned.training.recipe import Recipe, Worlds
-from fogbench.learned.training.rollout import Episode, greedy, roll
+from fogbench.learned.training.rollout import Run, greedy, roll_out
 from fogbench.planners import JUDGES, judge_of
 from fogbench.planners.judging import Teacher
 from fogbench.worlds.mistake import Mistake, one_of
@@ -46,7 +46,7 @@ def teacher_in(world: World, *, hindsight: bool = False) -> Teacher:
     return teacher
 
 
-def rehearse(recipe: Recipe) -> None:
+def refuse_unplayable(recipe: Recipe) -> None:
     """Draw a world of each lesson and variant, so that what cannot be played is told before the first batch.
 
     Raises:
@@ -75,8 +75,8 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
             for number in range(recipe.validation.episodes)
         ]
         with torch.no_grad():
-            episodes = [Episode(world, luck, teacher_in(world)) for world, luck in drawn]
-            rollout = roll(recipe.network, network, episodes, greedy)
+            episodes = [Run(world, luck, teacher_in(world)) for world, luck in drawn]
+            rollout = roll_out(recipe.network, network, episodes, greedy)
         wrong = int(rollout.wrong().sum()) / max(1, int(rollout.judged.sum()))
         scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
     return scores

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import fogbench
-from fogbench.worlds.files import alone, put
+from fogbench.worlds.files import alone, write
 from fogbench.worlds.mistake import Mistake
 
 HOLD = """
@@ -59,10 +59,10 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.Mon
     def full(_: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    put(tmp_path / "file", b"old")
+    write(tmp_path / "file", b"old")
     monkeypatch.setattr("os.fsync", full)
     with pytest.raises(OSError, match="No space left") as caught:
-        put(tmp_path / "file", b"new")
+        write(tmp_path / "file", b"new")
     assert caught.value.filename == str(tmp_path / "file")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
     assert (tmp_path / "file").read_bytes() == b"old"

@@ -9,14 +9,15 @@ import pytest
 import torch
 
 from fogbench.bench.playing import loop
-from fogbench.bench.playing.judge import GridJudge
 from fogbench.learned.agent import PolicyAgent, load, weighted
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.macn import Macn
 from fogbench.learned.policy import Policy
-from fogbench.learned.training.rollout import Episode, Moment, Rollout, greedy, roll
+from fogbench.learned.training.rollout import Rollout, Run, Turn, greedy, roll_out
 from fogbench.learned.training.trials import teacher_in
 from fogbench.learned.vin import Vin
+from fogbench.planners.grid_judge import GridJudge
+from fogbench.planners.judging import Verdict
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.tunnel import Tunnel
@@ -50,28 +51,28 @@ class Seen(NamedTuple):
 class Spy:
     """Chooses at random, and notes down all that each episode is at each step."""
 
-    def __init__(self, episodes: list[Episode]) -> None:
+    def __init__(self, episodes: list[Run]) -> None:
         """Nothing is noted yet."""
         self.episodes = episodes
         self.luck = np.random.default_rng(5)
         self.seen: list[list[Seen]] = [[] for _ in episodes]
 
-    def __call__(self, moment: Moment) -> Array:
+    def __call__(self, turn: Turn) -> Array:
         """Random moves."""
-        moves = self.luck.integers(4, size=len(moment.episodes))
-        for b, optimal, move in zip(moment.episodes.tolist(), moment.targets, moves.tolist(), strict=True):
+        moves = self.luck.integers(4, size=len(turn.episodes))
+        for b, optimal, move in zip(turn.episodes.tolist(), turn.targets, moves.tolist(), strict=True):
             teacher: Any = self.episodes[b].teacher
             self.seen[b].append(Seen(teacher.observation, teacher.known.cells.copy(), optimal, move))
         return moves
 
 
-class Clerk(GridJudge):
+class Noting(GridJudge):
     """Judges, and notes down what it judges by."""
 
-    def see(self, observation: Observation, move: Move) -> None:
+    def judge(self, action: Move) -> Verdict:
         """Judge a decision."""
-        super().see(observation, move)
-        self.__dict__.setdefault("seen", []).append((observation, self.reference.known.cells.copy(), move))
+        self.__dict__.setdefault("seen", []).append((self.observation, self.known.cells.copy(), action))
+        return super().judge(action)
 
 
 class Repeater(PolicyAgent):
@@ -103,15 +104,15 @@ def luck(number: int) -> np.random.Generator:
     return np.random.default_rng(100 + number)
 
 
-def episodes_in(worlds: list[GridWorld], *, hindsight: bool = False) -> list[Episode]:
+def episodes_in(worlds: list[GridWorld], *, hindsight: bool = False) -> list[Run]:
     """An episode in each world."""
-    return [Episode(world, luck(k), teacher_in(world, hindsight=hindsight)) for k, world in enumerate(worlds)]
+    return [Run(world, luck(k), teacher_in(world, hindsight=hindsight)) for k, world in enumerate(worlds)]
 
 
 def played(policy: Policy, worlds: list[GridWorld], *, hindsight: bool = False) -> tuple[Rollout, list[list[Seen]]]:
     """A rollout of some worlds at random."""
     spy = Spy(episodes_in(worlds, hindsight=hindsight))
-    return roll(policy, weighted(policy), spy.episodes, spy), spy.seen
+    return roll_out(policy, weighted(policy), spy.episodes, spy), spy.seen
 
 
 def first_look(world: GridWorld, *, hindsight: bool) -> list[str]:
@@ -161,18 +162,18 @@ def test_a_batch_is_its_single_episodes(conditions: Callable[..., Any], rules: d
     rollout, seen = played(POLICIES[2], worlds)
     judged = wrong = steps = 0
     for k, world in enumerate(worlds):
-        clerk, record = Clerk(world.task), loop.Record()
+        judge, record = Noting(world.task), loop.Record()
         agent = Repeater(POLICIES[2], world, [each.move for each in seen[k]])
-        outcome = loop.roll(world, agent, luck(k), record, clerk)
-        for ours, (observation, known, move) in zip(seen[k], clerk.__dict__["seen"], strict=True):
+        outcome = loop.roll(world, agent, luck(k), record, loop.Clerk(world, judge, record))
+        for ours, (observation, known, move) in zip(seen[k], judge.__dict__["seen"], strict=True):
             assert ours.observation._replace(view=0) == observation._replace(view=0)
             assert np.array_equal(ours.observation.view, observation.view)
             assert np.array_equal(ours.known, known)
             assert ours.move == move
-        assert clerk.judged == sum(each.optimal.any() for each in seen[k])
-        assert clerk.wrong == sum(each.optimal.any() and not each.optimal[each.move] for each in seen[k])
+        assert record.judged == sum(each.optimal.any() for each in seen[k])
+        assert record.wrong_decisions == sum(each.optimal.any() and not each.optimal[each.move] for each in seen[k])
         assert rollout.reached[k] == (outcome is Outcome.REACHED)
-        judged, wrong, steps = judged + clerk.judged, wrong + clerk.wrong, steps + len(record.actions)
+        judged, wrong, steps = judged + record.judged, wrong + record.wrong_decisions, steps + len(record.actions)
     assert len(rollout.outputs) == steps
     assert (int(rollout.judged.sum()), int(rollout.wrong().sum())) == (judged, wrong)
     assert 0 < wrong < judged
@@ -190,13 +191,14 @@ def test_a_greedy_batch_decides_as_the_policy_does(
     worlds = worlds_of(conditions, rules)
     network = in_double(load(policy).requires_grad_(requires_grad=False).double())
     monkeypatch.setattr("fogbench.learned.agent.weighted", lambda _: network)
-    rollout = roll(policy, network, episodes_in(worlds), greedy)
+    rollout = roll_out(policy, network, episodes_in(worlds), greedy)
     judged = wrong = steps = 0
     for k, world in enumerate(worlds):
-        judge, record = GridJudge(world.task), loop.Record()
-        outcome = loop.roll(world, policy.start(world.task, luck(0)), luck(k), record, judge)
+        record = loop.Record()
+        clerk = loop.Clerk(world, GridJudge(world.task), record)
+        outcome = loop.roll(world, policy.start(world.task, luck(0)), luck(k), record, clerk)
         assert rollout.reached[k] == (outcome is Outcome.REACHED)
-        judged, wrong, steps = judged + judge.judged, wrong + judge.wrong, steps + len(record.actions)
+        judged, wrong, steps = judged + record.judged, wrong + record.wrong_decisions, steps + len(record.actions)
     assert (len(rollout.outputs), int(rollout.judged.sum()), int(rollout.wrong().sum())) == (steps, judged, wrong)
 
 
@@ -207,12 +209,12 @@ def test_the_gradient_of_a_batch_is_that_of_its_episodes(conditions: Callable[..
     network = load(policy).double()
 
     def gradient(numbers: list[int]) -> list[torch.Tensor]:
-        episodes = [Episode(worlds[k], luck(k), teacher_in(worlds[k])) for k in numbers]
+        episodes = [Run(worlds[k], luck(k), teacher_in(worlds[k])) for k in numbers]
 
-        def down_and_up(moment: Moment) -> Array:
-            return np.full(len(moment.episodes), 2 * (moment.step % 2))
+        def down_and_up(turn: Turn) -> Array:
+            return np.full(len(turn.episodes), 2 * (turn.step % 2))
 
-        scores = roll(policy, in_double(network), episodes, down_and_up).scores
+        scores = roll_out(policy, in_double(network), episodes, down_and_up).scores
         network.zero_grad()
         scores.square().sum().backward()
         return [torch.zeros_like(p) if p.grad is None else p.grad.clone() for p in network.parameters()]
@@ -238,4 +240,4 @@ def test_a_map_of_another_size_is_refused(conditions: Callable[..., Any]) -> Non
     policy = Macn(**{**SMALL, "size": (8, 8)}, reading="map", memory="feedforward")
     episodes = episodes_in(worlds_of(conditions, RULES[0], 2))
     with pytest.raises(Mistake, match=r"^got a map of \d+x\d+; expected 8x8, the size$"):
-        roll(policy, weighted(policy), episodes, greedy)
+        roll_out(policy, weighted(policy), episodes, greedy)

@@ -17,9 +17,9 @@ from fogbench.learned.macn import Macn
 from fogbench.learned.training.exploring import Explorer, Noisy, pick
 from fogbench.learned.training.imitation import Curriculum, Imitation, Teacher
 from fogbench.learned.training.recipe import Lesson, Recipe, Validation, Worlds
-from fogbench.learned.training.rollout import Episode, Moment, Rollout, roll
+from fogbench.learned.training.rollout import Rollout, Run, Turn, roll_out
 from fogbench.learned.training.student import access_weight, imitation_loss, part, rate
-from fogbench.learned.training.trials import draw_world, rehearse
+from fogbench.learned.training.trials import draw_world, refuse_unplayable
 from fogbench.learned.training.trials import validate as tried
 from fogbench.planners.grid_judge import GridJudge, Hindsight
 from fogbench.worlds.maps.families.blobs import Blobs
@@ -75,13 +75,13 @@ def test_columns_are_picked_as_they_weigh() -> None:
     assert np.bincount(picked, minlength=4).tolist() == [0, 250, 0, 750]
 
 
-def moment(count: int, scores: list[float], optimal: list[bool], open_: list[bool]) -> Moment:
+def turn(count: int, scores: list[float], optimal: list[bool], open_: list[bool]) -> Turn:
     """The same step of many episodes."""
     rows = (np.tile(row, (count, 1)) for row in (scores, optimal, open_))
-    return Moment(0, np.arange(count), *rows)
+    return Turn(0, np.arange(count), *rows)
 
 
-def moves_of(share: float, step: Moment) -> Array:
+def moves_of(share: float, step: Turn) -> Array:
     """How often each move is chosen."""
     explorer = Explorer(np.random.default_rng(0), len(step.episodes), share)
     return np.bincount(explorer(step), minlength=4) / len(step.episodes)
@@ -89,7 +89,7 @@ def moves_of(share: float, step: Moment) -> Array:
 
 def test_the_teacher_takes_any_optimal_move_and_the_network_its_own() -> None:
     """With a share of a half, half of the episodes follow each."""
-    step = moment(20_000, [-50, -50, 0, 0], [True, True, False, False], [True] * 4)
+    step = turn(20_000, [-50, -50, 0, 0], [True, True, False, False], [True] * 4)
     assert moves_of(1, step) == pytest.approx([0.5, 0.5, 0, 0], abs=0.02)
     assert moves_of(0, step) == pytest.approx([0, 0, 0.5, 0.5], abs=0.02)
     assert moves_of(0.5, step) == pytest.approx([0.25] * 4, abs=0.02)
@@ -97,15 +97,15 @@ def test_the_teacher_takes_any_optimal_move_and_the_network_its_own() -> None:
 
 def test_where_the_network_would_collide_the_teacher_decides() -> None:
     """A move into an obstacle in view is replaced by an optimal one; where there is none, it stays."""
-    blocked = moment(1000, [-50, -50, 0, 0], [True, False, False, False], [True, True, False, True])
+    blocked = turn(1000, [-50, -50, 0, 0], [True, False, False, False], [True, True, False, True])
     assert moves_of(0, blocked) == pytest.approx([0.5, 0, 0, 0.5], abs=0.05)
     assert moves_of(0, blocked._replace(targets=np.zeros((1000, 4), np.bool_)))[2] == pytest.approx(0.5, abs=0.05)
 
 
 def test_choices_do_not_depend_on_who_has_ended() -> None:
     """The episodes that go on meet the chances they would have met."""
-    whole = moment(100, [0, 0, 0, 0], [True] * 4, [True] * 4)
-    some = Moment(0, *(part[::3] for part in whole[1:]))
+    whole = turn(100, [0, 0, 0, 0], [True] * 4, [True] * 4)
+    some = Turn(0, *(part[::3] for part in whole[1:]))
     explorers = [Explorer(np.random.default_rng(0), 100, 0.5) for _ in range(2)]
     assert np.array_equal(explorers[0](whole)[::3], explorers[1](some))
 
@@ -212,10 +212,10 @@ def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], mon
 
     def spy(*arguments: Any) -> Rollout:
         kinds.append({type(episode.teacher) for episode in arguments[2]})
-        return roll(*arguments)
+        return roll_out(*arguments)
 
-    monkeypatch.setattr("fogbench.learned.training.student.roll", spy)
-    monkeypatch.setattr("fogbench.learned.training.trials.roll", spy)
+    monkeypatch.setattr("fogbench.learned.training.student.roll_out", spy)
+    monkeypatch.setattr("fogbench.learned.training.trials.roll_out", spy)
     for hindsight in (False, True):
         taught = recipe(batches=1, teacher=Teacher(hindsight=hindsight))
         learns(taught).learn()
@@ -259,19 +259,19 @@ def test_worlds_that_cannot_be_played_are_told_at_once(
     """Of the lessons, at first and at last, and of every variant: no task is found, or the network does not fit."""
     made = recipe()
     near, far = made.lessons[0].worlds, Worlds(MAPS, conditions(distance=(50, 60)))
-    rehearse(made)
+    refuse_unplayable(made)
     none = "Blobs: no task with an optimum of 50 to 60 cells was found on 1000 maps."
     for changed, place in (
         (replace(made, held_out={"near": near, "far": far}), "far"),
         (replace(made, lessons=(Lesson(near, MAPS), Lesson(far, MAPS))), "lesson 2, at first"),
     ):
         with pytest.raises(Mistake) as caught:
-            rehearse(changed)
+            refuse_unplayable(changed)
         assert str(caught.value) == f"small: {place}: {none}"
     whole = SMALL.model_copy(update={"reading": "map", "size": (6, 6)})
     large = Worlds(Blobs(size=9, obstacles=(0, 1), obstacle_size=(1, 1)), near.conditions)
     with pytest.raises(Mistake) as caught:
-        rehearse(replace(made, network=whole, held_out={"large": large}))
+        refuse_unplayable(replace(made, network=whole, held_out={"large": large}))
     assert str(caught.value) == "small: large: got a map of 9x9; expected 6x6, the size."
 
 
@@ -282,7 +282,7 @@ def test_listed_tasks_are_not_learned_from(recipe: Callable[..., Recipe], tmp_pa
     made = recipe()
     listed = Worlds(MovingAI(map=tmp_path / "x.map"), made.lessons[0].worlds.conditions)
     with pytest.raises(Mistake) as caught:
-        rehearse(replace(made, held_out={"city": listed}))
+        refuse_unplayable(replace(made, held_out={"city": listed}))
     expected = "got a list of 1 tasks; expected maps or tasks that are drawn afresh."
     assert str(caught.value) == f"small: city: {expected}"
 
@@ -295,11 +295,11 @@ def test_a_curriculum_is_played_from_its_beginning(
     made = recipe(batches=4, curriculum=Curriculum(easy={}, until=0.5))
     student, walls = learns(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
 
-    def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
+    def rolled(settings: Any, network: Any, episodes: list[Run], choose: Any) -> Rollout:
         walls.append(float(np.mean([cast(Any, episode.world).blocked.mean() for episode in episodes])))
-        return roll(settings, network, episodes, choose)
+        return roll_out(settings, network, episodes, choose)
 
-    monkeypatch.setattr("fogbench.learned.training.student.roll", rolled)
+    monkeypatch.setattr("fogbench.learned.training.student.roll_out", rolled)
     for _ in range(4):
         student.learn()
     assert walls[0] == 0
@@ -315,14 +315,14 @@ def test_lessons_take_turns(
     student = learns(replace(made, lessons=(*made.lessons, Lesson(other, wide), *made.lessons)))
     sizes, budgets, sides = list[int](), list[int](), list[int]()
 
-    def rolled(settings: Any, network: Any, episodes: list[Episode], choose: Any) -> Rollout:
-        rollout = roll(settings, network, episodes, choose)
+    def rolled(settings: Any, network: Any, episodes: list[Run], choose: Any) -> Rollout:
+        rollout = roll_out(settings, network, episodes, choose)
         sizes.extend(len(cast(Any, episode.world).blocked) for episode in episodes)
         budgets.extend(episode.world.task.budget.steps for episode in episodes)
         sides.extend(len(cast(Any, episode.teacher).observation.view) for episode in episodes)
         return rollout
 
-    monkeypatch.setattr("fogbench.learned.training.student.roll", rolled)
+    monkeypatch.setattr("fogbench.learned.training.student.roll_out", rolled)
     for _ in range(2):
         student.learn()
     assert sizes == [6, 9, 6, 6, 9, 6, 6, 9]

@@ -12,7 +12,7 @@ import numpy as np
 
 from fogbench.worlds.types import Array, Cell, MapError
 
-FREE, BLOCKED = ".GS", "@OTW"
+FREE_LETTERS, BLOCKED_LETTERS = ".GS", "@OTW"
 """The letters of a map. Swamp `S` is free as the format says; water `W` cannot be entered from land."""
 
 
@@ -41,7 +41,7 @@ def read_map(path: Path, contents: bytes) -> Array:
     if len(rows) != height:
         raise MapError(f"{path}:{len(lines)}: got {len(rows)} rows; expected {height}, the height")
     letters = np.frombuffer("".join(rows).encode(), np.uint8).reshape(height, width)
-    blocked: Array = np.isin(letters, np.frombuffer(BLOCKED.encode(), np.uint8))  # [H, W]
+    blocked: Array = np.isin(letters, np.frombuffer(BLOCKED_LETTERS.encode(), np.uint8))  # [H, W]
     blocked.setflags(write=False)
     return blocked
 
@@ -87,10 +87,12 @@ def _dimension(path: Path, lines: list[str], number: int, name: str) -> int:
 def _check_row(place: str, row: str, width: int) -> None:
     if len(row) != width:
         raise MapError(f"{place}: got {len(row)} letters; expected {width}, the width")
-    strange = set(row) - set(FREE + BLOCKED)
+    strange = set(row) - set(FREE_LETTERS + BLOCKED_LETTERS)
     if strange:
         column = min(map(row.index, strange))
-        raise MapError(f"{place}: got {row[column]!r} in column {column}; expected one of {' '.join(FREE + BLOCKED)}")
+        raise MapError(
+            f"{place}: got {row[column]!r} in column {column}; expected one of {' '.join(FREE_LETTERS + BLOCKED_LETTERS)}"
+        )
 
 
 def _whole(place: str, field: str) -> int:
