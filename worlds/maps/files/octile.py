@@ -90,9 +90,8 @@ def _check_row(place: str, row: str, width: int) -> None:
     strange = set(row) - set(FREE_LETTERS + BLOCKED_LETTERS)
     if strange:
         column = min(map(row.index, strange))
-        raise MapError(
-            f"{place}: got {row[column]!r} in column {column}; expected one of {' '.join(FREE_LETTERS + BLOCKED_LETTERS)}"
-        )
+        expected = " ".join(FREE_LETTERS + BLOCKED_LETTERS)
+        raise MapError(f"{place}: got {row[column]!r} in column {column}; expected one of {expected}")
 
 
 def _whole(place: str, field: str) -> int:
