@@ -32,6 +32,15 @@ FACE = {
 TARGETS = {**PLANNERS, **LEARNED, **FAMILIES, **{name: kind.conditions for name, kind in KINDS.items()}, **JUDGES}
 
 
+NETS = """
+name: nets
+maps: {blobs: {size: 8, obstacles: [0, 3], obstacle_size: [1, 2]}}
+budget: {steps: 30}
+agents: [astar, macn: {checkpoint: macn-grid}]
+episodes: 2
+"""
+
+
 def loaded(code: str) -> set[str]:
     """The modules that are loaded after some code has run in a process of its own."""
     report = f"{code}\nimport sys\nprint('\\nLOADED', *sys.modules)"
@@ -98,10 +107,22 @@ def test_the_face_is_what_its_stub_says() -> None:
 
 
 def test_a_check_loads_no_tables_and_no_plots() -> None:
-    """It draws a world of each variant, for which it needs Numba; agents that search need no torch."""
-    found = loaded(told("check", "goal_distance"))
-    assert {"numba", "fogbench.planners.rrt_star"} <= found
-    assert not {"pandas", "matplotlib", "scipy.stats", "scipy.sparse", "pebble", "sklearn", "torch"} & found
+    """It draws a world of each variant, for which it needs Numba, and holds all weights against their settings."""
+    found = loaded(told("check", "grid"))
+    assert {"numba", "safetensors", "fogbench.planners.rrt_star", "fogbench.learned.macn"} <= found
+    light = {"pandas", "pyarrow", "matplotlib", "scipy.stats", "scipy.sparse", "pebble", "sklearn", "torch"}
+    assert not light & found
+
+
+def test_a_report_and_a_replay_load_no_network(tmp_path: Path) -> None:
+    """What a network did is told and drawn again from its record alone."""
+    (tmp_path / "nets.yaml").write_text(NETS)
+    place, results = str(tmp_path / "nets.yaml"), str(tmp_path / "results")
+    assert "torch" not in loaded(told("run", place, "--results", results))  # its workers have it
+    assert "torch" not in loaded(told("report", place, "--results", results))
+    out = str(tmp_path / "replay.png")
+    assert "torch" not in loaded(told("replay", place, "--agent", "macn", "--results", results, "--out", out))
+    assert Path(out).exists()
 
 
 def test_reading_a_scenario_loads_no_torch() -> None:
