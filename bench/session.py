@@ -63,6 +63,8 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
         read_run(folder)
         frame = store.read(folder, scenario, READS, versions_of(folder))
         lines = comparisons(summary(frame, scenario), scenario)
+        if not lines.rows:
+            raise Mistake(f"{folder}: got no episodes of {label} beside those of another agent; expected both.")
         print_table("Paired", lines, console)
         page = folder / ("-".join(["against", *re.findall(r"\w+", label)]) + ".md")
         write(page, f"# {scenario.name}, against {label}\n\n{markdown(lines)}".encode())

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from fogbench.bench.playing.local import Job, play_here
 from fogbench.bench.playing.provenance import noted
-from fogbench.bench.playing.store import recorded, recording
+from fogbench.bench.playing.recorder import recording
+from fogbench.bench.playing.store import recorded
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Outcome
 

@@ -6,15 +6,13 @@ the disk and enters nothing.
 """
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from time import monotonic
 
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fogbench.bench.playing.episode import LATER, SCHEMA, Episode, table
+from fogbench.bench.playing.episode import LATER, SCHEMA
 from fogbench.bench.playing.keys import Versions, agent_key, world_key
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds import files
@@ -35,12 +33,6 @@ STALE = (
     "changed; `fogbench run` plays them again."
 )
 """What a user is told of `stale` episodes."""
-
-ROWS = 500
-"""Rows that are held back at most."""
-
-PAUSE, SHARE = 1.0, 0.01
-"""Rows are held back for this many seconds at most, or for this share of a long run's time, so that parts stay few."""
 
 
 class StoreError(Mistake):
@@ -79,7 +71,7 @@ def _rows(table: pa.Table, current: pd.DataFrame, columns: list[str]) -> pd.Data
 
 
 def _load_all(folder: Path, columns: list[str]) -> Iterator[pa.Table]:
-    for part in _parts(folder):
+    for part in parts(folder):
         yield _load(part, list(dict.fromkeys([*columns, *KEYS])))
 
 
@@ -120,7 +112,8 @@ def _current(scenario: Scenario, versions: Versions | None) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=[*KEYS, "wanted"]).rename_axis("place").reset_index()
 
 
-def _parts(folder: Path) -> list[Path]:
+def parts(folder: Path) -> list[Path]:
+    """The files of a store, oldest first."""
     return sorted((folder / "episodes").glob("[!.]*.parquet"))
 
 
@@ -140,70 +133,6 @@ def _load(part: Path, columns: list[str]) -> pa.Table:
         raise StoreError(f"{part}: got a broken file ({reason}); expected a Parquet file of episodes.") from None
 
 
-class Recorder:
-    """Appends episodes to a store. A part is written whole or not at all, and never touched again."""
-
-    def __init__(self, folder: Path, covariates: Sequence[str]) -> None:
-        """Go on after the last part that is there."""
-        self.covariates = covariates
-        self.episodes = folder / "episodes"
-        self.part = max((int(part.stem) for part in _parts(folder) if part.stem.isdecimal()), default=0) + 1
-        self.rows: list[Episode] = []
-        self.began = self.written = monotonic()
-
-    def append(self, row: Episode) -> None:
-        """Take one more row."""
-        self.rows.append(row)
-        if len(self.rows) >= ROWS:
-            self.flush()
-        else:
-            self.flush_if_due()
-
-    def flush_if_due(self) -> None:
-        """Write what was held back for long enough."""
-        now = monotonic()
-        if now - self.written > max(PAUSE, SHARE * (now - self.began)):
-            self.flush()
-
-    def flush(self) -> None:
-        """Write what is held back."""
-        if self.rows:
-            sink = pa.BufferOutputStream()
-            pq.write_table(table(self.rows, self.covariates), sink)
-            write(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
-            # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
-            self.part += 1
-            self.rows = []
-            self.written = monotonic()
-
-
-@contextmanager
-def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
-    """Open a store for writing, alone; what killed runs left half written is removed.
-
-    Args:
-        folder: of the store.
-        covariates: of all kinds of world that will be recorded; they are columns of every part.
-
-    Raises:
-        Mistake: another run has it open.
-        StoreError: it cannot be written.
-    """
-    with ExitStack() as held:
-        try:
-            held.enter_context(files.alone(folder, "run"))
-            (folder / "episodes").mkdir(exist_ok=True)
-        except OSError as error:
-            raise _unwritable(folder, error) from None
-        for leftover in (folder / "episodes").glob(".*.parquet"):
-            leftover.unlink()
-        recorder = Recorder(folder, covariates)
-        try:
-            yield recorder
-        finally:
-            recorder.flush()
-
-
 def write(path: Path, content: bytes | pa.Buffer) -> None:
     """Write a whole file or none.
 
@@ -213,8 +142,9 @@ def write(path: Path, content: bytes | pa.Buffer) -> None:
     try:
         files.write(path, memoryview(content))
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise unwritable(path, error) from None
 
 
-def _unwritable(path: Path, error: OSError) -> StoreError:
+def unwritable(path: Path, error: OSError) -> StoreError:
+    """What is told of a place that cannot be written."""
     return StoreError(f"{path}: got {error.strerror}; expected a place that can be written.")

@@ -56,6 +56,10 @@ class RecipePage(Settings):
     """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
 
+Here = Reading[RecipePage]
+"""What one page of a recipe says: the whole, or a variant laid over it."""
+
+
 def read_recipe(text: str, path: Path) -> Recipe:
     """Read the text of a recipe.
 
@@ -73,17 +77,37 @@ def read_recipe(text: str, path: Path) -> Recipe:
         raise wrong(faults, path)
     if flat := _flat(page):
         raise wrong([flat], path)
-    rows = pages(page, faults, VARIED, partial(blocks_of, folder=path.parent))
-    whole = Reading(RecipePage, page, path.parent)
-    variants = {name: Reading(RecipePage, row, path.parent) for name, row in rows.items()}
-    network, learning = _network(whole, page.child("network")), _learning(whole, page.child("learning"))
-    pairs = [(variants[name], rows[name]) for name in _names(whole, page.child("lessons"), rows)] or [(whole, page)]
-    lessons = [(reading, _easy(reading, lesson)) for reading, lesson in pairs]
-    faults += settle([whole.faults, *(variant.faults for variant in variants.values())])
+    read = _read(page, path.parent, faults)
     if faults:
         raise wrong(faults, path)
     if unset := next((value.unset for value in page.below() if value.unset), ""):
         raise Mistake(f"{path}: got ${{{unset}}}; expected that environment variable to be set.")
+    return _recipe(text, path, *read)
+
+
+Readings = tuple[Here, dict[str, Here], list[tuple[Here, MapFamily | None]]]
+"""The page, its variants, and the lessons with their maps at first."""
+
+
+def _read(page: Value, folder: Path, faults: list[Fault]) -> tuple[Readings, "Policy | None", Learner | None]:
+    """All that a page says; what is wrong with it is added to `faults`."""
+    rows = pages(page, faults, VARIED, partial(blocks_of, folder=folder))
+    whole = Reading(RecipePage, page, folder)
+    variants = {name: Reading(RecipePage, row, folder) for name, row in rows.items()}
+    network, learning = _network(whole, page.child("network")), _learning(whole, page.child("learning"))
+    pairs = [(variants[name], rows[name]) for name in _names(whole, page.child("lessons"), rows)] or [(whole, page)]
+    lessons = [(reading, _easy(reading, lesson)) for reading, lesson in pairs]
+    faults += settle([whole.faults, *(variant.faults for variant in variants.values())])
+    return (whole, variants, lessons), network, learning
+
+
+def _recipe(text: str, path: Path, readings: Readings, network: "Policy | None", learning: Learner | None) -> Recipe:
+    """A recipe of which everything could be read.
+
+    Raises:
+        Mistake: there is nothing to learn on here, or the network does not play there.
+    """
+    whole, variants, lessons = readings
     assert network is not None
     for reading in (whole, *variants.values()):
         _refuse(reading, network, path)
@@ -102,7 +126,7 @@ def read_recipe(text: str, path: Path) -> Recipe:
     )
 
 
-def _refuse(reading: Reading[RecipePage], network: "Policy", path: Path) -> None:
+def _refuse(reading: Here, network: "Policy", path: Path) -> None:
     """Nothing is learned from worlds that cannot be made here, or that the network does not play.
 
     Raises:
@@ -124,7 +148,7 @@ def _flat(page: Value) -> Fault | None:
     return None
 
 
-def _network(reading: Reading[RecipePage], item: Value | None) -> "Policy | None":
+def _network(reading: Here, item: Value | None) -> "Policy | None":
     """The network that a page names, with fresh weights unless it says others."""
     if item is None or not isinstance(item.content, str | dict):
         return None
@@ -138,7 +162,7 @@ def _network(reading: Reading[RecipePage], item: Value | None) -> "Policy | None
     return cast("Policy | None", reading.block(settings, replace(block, content=fresh | own)))
 
 
-def _learning(reading: Reading[RecipePage], item: Value | None) -> Learner | None:
+def _learning(reading: Here, item: Value | None) -> Learner | None:
     """How the network learns, as a page says it."""
     if item is None or not isinstance(item.content, dict):
         return None
@@ -146,7 +170,7 @@ def _learning(reading: Reading[RecipePage], item: Value | None) -> Learner | Non
     return cast(Learner | None, reading.block(*found)) if found else None
 
 
-def _found(reading: Reading[RecipePage], item: Value, table: Table, noun: str) -> tuple[type[Settings], Value] | None:
+def _found(reading: Here, item: Value, table: Table, noun: str) -> tuple[type[Settings], Value] | None:
     """The class that an item names, and its block; a training cannot do without it."""
     named = reading.named(item, f"the name of a {noun}, or one name with its settings")
     if named is None:
@@ -158,7 +182,7 @@ def _found(reading: Reading[RecipePage], item: Value, table: Table, noun: str) -
     return (found, block) if found else None
 
 
-def _names(reading: Reading[RecipePage], lessons: Value | None, rows: dict[str, Value]) -> list[str]:
+def _names(reading: Here, lessons: Value | None, rows: dict[str, Value]) -> list[str]:
     """The variants that are lessons."""
     items = lessons.content if lessons and isinstance(lessons.content, list) else []
     names = [item for item in items if isinstance(item.content, str) and not item.unset]
@@ -167,7 +191,7 @@ def _names(reading: Reading[RecipePage], lessons: Value | None, rows: dict[str, 
     return [str(item.content) for item in names if item not in unknown]
 
 
-def _easy(reading: Reading[RecipePage], lesson: Value) -> MapFamily | None:
+def _easy(reading: Here, lesson: Value) -> MapFamily | None:
     """The maps of a lesson's page with the curriculum's first settings; without a curriculum, as they are."""
     learning, maps = lesson.child("learning"), lesson.child("maps")
     blocks = list(learning.fields().values()) if learning else []
@@ -179,6 +203,6 @@ def _easy(reading: Reading[RecipePage], lesson: Value) -> MapFamily | None:
     return cast(MapFamily | None, reading.block(type(reading.family), merge(opened(block), easy)))
 
 
-def _worlds(reading: Reading[RecipePage]) -> Worlds:
+def _worlds(reading: Here) -> Worlds:
     assert reading.family is not None
     return Worlds(reading.family, cast(Any, reading.conditions))

@@ -1,6 +1,7 @@
 """Tables of text: how a number is written, and how a table looks in Markdown and in a terminal."""
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -98,6 +99,6 @@ def terminal(title: str, lines: Lines) -> RichTable:
         widest, last = max((len(row[k]) for row in lines.rows), default=0), k == len(lines.headings) - 1
         least = min(widest, LEAST) if last else widest
         table.add_column(Text(text.replace(" ", "\n")), no_wrap=not last, overflow="fold", min_width=least)
-    for row, after in zip(lines.rows, [*lines.rows[1:], None], strict=True):
+    for row, after in zip_longest(lines.rows, lines.rows[1:]):
         table.add_row(*map(Text, row), end_section=after is not None and after[0] != row[0])
     return table

@@ -88,6 +88,15 @@ def test_a_report_compares_with_whom_one_asks_for(fogbench: Fogbench) -> None:
     assert (code, err) == (2, f"--against, small.yaml: got fronteir; {expected}\n")
 
 
+def test_who_plays_alone_is_compared_with_nobody(fogbench: Fogbench) -> None:
+    """One line, and no empty table."""
+    write("small", "[astar]")
+    fogbench("run", "small.yaml")
+    code, _, err = fogbench("report", "small.yaml", "--against", "astar")
+    assert code == 2
+    assert err == "results/small: got no episodes of astar beside those of another agent; expected both.\n"
+
+
 def test_results_of_another_machine_stay(fogbench: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
     """What differs here is told in one line, by all that read them; only a run would play them again."""
     write("small", "[astar, memoryless]")

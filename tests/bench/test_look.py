@@ -10,7 +10,7 @@ from PIL import Image
 
 from fogbench.bench.look import look_inside
 from fogbench.bench.playing.play import lost, play
-from fogbench.bench.playing.store import recording
+from fogbench.bench.playing.recorder import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.mistake import Mistake

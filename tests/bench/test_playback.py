@@ -12,7 +12,7 @@ from fogbench.bench.playback import replay_recorded
 from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.provenance import noted, read_run
-from fogbench.bench.playing.store import recording
+from fogbench.bench.playing.recorder import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Outcome

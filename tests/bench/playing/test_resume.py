@@ -23,10 +23,10 @@ RUN = """
 import signal
 import sys
 from pathlib import Path
-from fogbench.bench.playing import store
+from fogbench.bench.playing import recorder
 from fogbench.bench.playing.runner import run
 from fogbench.bench.reading.scenario import read_scenario
-store.PAUSE = 0.05  # seconds; else a quick machine is killed each time before it has written anything
+recorder.PAUSE = 0.05  # seconds; else a quick machine is killed each time before it has written anything
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the background jobs of a shell are deaf to it
 path = Path(sys.argv[1])
 try:

@@ -15,7 +15,8 @@ import pytest
 
 from fogbench.bench.playing.episode import SCHEMA, Episode
 from fogbench.bench.playing.keys import agent_key, world_key
-from fogbench.bench.playing.store import ROWS, StoreError, read, recorded, recording, stale
+from fogbench.bench.playing.recorder import ROWS, recording
+from fogbench.bench.playing.store import StoreError, read, recorded, stale
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.maps.covariates import COVARIATES
 from fogbench.worlds.mistake import Mistake
@@ -227,7 +228,8 @@ import pickle, re, sys
 from dataclasses import replace
 from pathlib import Path
 from fogbench.bench.reading.scenario import read_scenario
-from fogbench.bench.playing.store import recorded, recording
+from fogbench.bench.playing.recorder import recording
+from fogbench.bench.playing.store import recorded
 
 path = Path(sys.argv[1])
 scenario = read_scenario(path.read_text(), path)

@@ -66,6 +66,13 @@ def test_brackets_in_a_terminal_are_text() -> None:
     assert "[bold]x 1.5 [1.0, 2.0]" in console.file.getvalue()
 
 
+def test_a_table_without_rows_has_its_headings() -> None:
+    """Nothing to tell is no error."""
+    console = Console(width=60, file=StringIO())
+    console.print(terminal("T", Lines(["a", "b"], [])))
+    assert "a" in console.file.getvalue()
+
+
 def test_a_narrow_terminal_gets_no_blank_lines() -> None:
     """A table wider than the terminal is printed whole, and no line ends with blanks that would wrap; colours stay."""
     console = Console(width=20, file=StringIO(), force_terminal=True, color_system="standard")

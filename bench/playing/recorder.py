@@ -1,0 +1,83 @@
+"""Writing into the store of a scenario: rows as they come, in parts that are whole, by one process at a time."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from time import monotonic
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from fogbench.bench.playing.episode import Episode, table
+from fogbench.bench.playing.store import parts, unwritable, write
+from fogbench.worlds import files
+
+ROWS = 500
+"""Rows that are held back at most."""
+
+PAUSE, SHARE = 1.0, 0.01
+"""Rows are held back for this many seconds at most, or for this share of a long run's time, so that parts stay few."""
+
+
+class Recorder:
+    """Appends episodes to a store. A part is written whole or not at all, and never touched again."""
+
+    def __init__(self, folder: Path, covariates: Sequence[str]) -> None:
+        """Go on after the last part that is there."""
+        self.covariates = covariates
+        self.episodes = folder / "episodes"
+        self.part = max((int(part.stem) for part in parts(folder) if part.stem.isdecimal()), default=0) + 1
+        self.rows: list[Episode] = []
+        self.began = self.written = monotonic()
+
+    def append(self, row: Episode) -> None:
+        """Take one more row."""
+        self.rows.append(row)
+        if len(self.rows) >= ROWS:
+            self.flush()
+        else:
+            self.flush_if_due()
+
+    def flush_if_due(self) -> None:
+        """Write what was held back for long enough."""
+        now = monotonic()
+        if now - self.written > max(PAUSE, SHARE * (now - self.began)):
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is held back."""
+        if self.rows:
+            sink = pa.BufferOutputStream()
+            pq.write_table(table(self.rows, self.covariates), sink)
+            write(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
+            # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
+            self.part += 1
+            self.rows = []
+            self.written = monotonic()
+
+
+@contextmanager
+def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
+    """Open a store for writing, alone; what killed runs left half written is removed.
+
+    Args:
+        folder: of the store.
+        covariates: of all kinds of world that will be recorded; they are columns of every part.
+
+    Raises:
+        Mistake: another run has it open.
+        StoreError: it cannot be written.
+    """
+    with ExitStack() as held:
+        try:
+            held.enter_context(files.alone(folder, "run"))
+            (folder / "episodes").mkdir(exist_ok=True)
+        except OSError as error:
+            raise unwritable(folder, error) from None
+        for leftover in (folder / "episodes").glob(".*.parquet"):
+            leftover.unlink()
+        recorder = Recorder(folder, covariates)
+        try:
+            yield recorder
+        finally:
+            recorder.flush()
