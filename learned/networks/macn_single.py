@@ -7,7 +7,6 @@ Words used here
     F       features
 """
 
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,10 +16,10 @@ from torch import Tensor
 from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SEEN
 from fogbench.learned.kernels.linear import apply
-from fogbench.learned.kernels.native import NUMBERS, job, matrix, pointer, run, vector
+from fogbench.learned.kernels.native import Loop, job, matrix, pointer, vector
 from fogbench.learned.value_iteration.forward import correlate, forward_block
 from fogbench.learned.value_iteration.planes import pack, plane_size, planes, unpack
-from fogbench.worlds.kernel import callback, kernel
+from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 
 JOB = job(
@@ -47,43 +46,8 @@ def see(weights: Weights, iterations: int, inputs: Inputs) -> Tensor:
     """The features [1, F] of what is seen."""
     inputs = Inputs(*(part.contiguous() for part in inputs))
     y = inputs.image.new_empty(1, len(weights.features))
-    run(
-        loop(NUMBERS[y.dtype]), 1, *inputs.image.shape[2:], iterations, y.shape[1],
-        *(tensor.data_ptr() for tensor in (*inputs, *weights, y)),
-    )  # fmt: skip
+    LOOP.run(y.dtype, 1, (*inputs.image.shape[2:], iterations, y.shape[1]), (*inputs, *weights, y))
     return y
-
-
-@lru_cache
-def loop(number: type[np.floating[Any]]) -> int:
-    """The address of the loop for a type of numbers."""
-
-    def whole(address: Any) -> None:
-        job = carray(address, 1, JOB)[0]
-        height, width, cells = job.height, job.width, job.height * job.width
-        scratch = planes(7, plane_size(1, height, width), number)
-        q, v = np.empty((1, 4, height, width), number), np.empty((1, height, width), number)
-        reward_map(
-            carray(pointer(job.image), (1, CHANNELS, height, width), number),
-            carray(pointer(job.reward_kernels), (4, CHANNELS, 9), number), vector(number, job.reward_bias, 4),
-            scratch, q,
-        )  # fmt: skip
-        forward_block(
-            1, job.iterations, 0, q, carray(pointer(job.kernels), (4, 5, 9), number), q[:0], scratch, scratch[5:],
-            np.empty((2, scratch.shape[1]), np.uint8), q, v.reshape((1, 1, height, width)),
-        )  # fmt: skip
-        told = np.empty(cells + 4 + SEEN + COMPASS, number)
-        here = q.reshape((4, cells))[:, carray(pointer(job.cell), (1,), np.int64)[0]]
-        told[:cells] = v.reshape(cells)
-        told[cells : cells + 4] = here
-        told[: cells + 4] -= here.max()
-        told[cells + 4 : cells + 4 + SEEN] = vector(number, job.sight, SEEN)
-        told[cells + 4 + SEEN :] = vector(number, job.compass, COMPASS)
-        y = vector(number, job.y, job.features)
-        apply(matrix(number, job.weight, len(y), len(told)), vector(number, job.bias, len(y)), told, y)
-        np.maximum(y, 0, y)
-
-    return callback(whole)
 
 
 @kernel
@@ -99,3 +63,33 @@ def reward_map(image: Array, kernels: Array, bias: Array, scratch: Array, reward
         correlate(terms, kernels[:, channel], plane, width + 1, 1)
     for action in range(4):
         unpack(terms[action], reward, action, 0, 1)
+
+
+@kernel
+def whole(number: Any, job: Any, _block: int) -> None:
+    """All of it."""
+    height, width, cells = job.height, job.width, job.height * job.width
+    scratch = planes(7, plane_size(1, height, width), number)
+    q, v = np.empty((1, 4, height, width), number), np.empty((1, height, width), number)
+    reward_map(
+        carray(pointer(job.image), (1, CHANNELS, height, width), number),
+        carray(pointer(job.reward_kernels), (4, CHANNELS, 9), number), vector(number, job.reward_bias, 4),
+        scratch, q,
+    )  # fmt: skip
+    forward_block(
+        1, job.iterations, 0, q, carray(pointer(job.kernels), (4, 5, 9), number), q[:0], scratch, scratch[5:],
+        np.empty((2, scratch.shape[1]), np.uint8), q, v.reshape((1, 1, height, width)),
+    )  # fmt: skip
+    told = np.empty(cells + 4 + SEEN + COMPASS, number)
+    here = q.reshape((4, cells))[:, carray(pointer(job.cell), (1,), np.int64)[0]]
+    told[:cells] = v.reshape(cells)
+    told[cells : cells + 4] = here
+    told[: cells + 4] -= here.max()
+    told[cells + 4 : cells + 4 + SEEN] = vector(number, job.sight, SEEN)
+    told[cells + 4 + SEEN :] = vector(number, job.compass, COMPASS)
+    y = vector(number, job.y, job.features)
+    apply(matrix(number, job.weight, len(y), len(told)), vector(number, job.bias, len(y)), told, y)
+    np.maximum(y, 0, y)
+
+
+LOOP = Loop(whole, JOB)
