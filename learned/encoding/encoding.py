@@ -22,7 +22,10 @@ class Viewpoint(Protocol):
         """Take in what the agent is told; once for every observation, in order."""
 
     def act(self, output: int) -> Any:
-        """The action that an output of the network means here; it is what the agent does, and may be remembered."""
+        """The action that an output of the network means here, once after every look; it may be remembered.
+
+        What was seen is carried to the next decision no further than `bytes` tells.
+        """
 
     @property
     def bytes(self) -> int:

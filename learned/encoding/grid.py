@@ -27,10 +27,10 @@ class Shown(Protocol):
 
 
 class GridViewpoint:
-    """What is kept of an episode: the last look, the last move and, if it is shown, the map known so far."""
+    """What is kept of an episode: the last move and, if it is shown, the map known so far; a look until the move."""
 
     observation: Observation
-    """Of the last look."""
+    """Of the look that no move has followed yet."""
 
     def __init__(self, task: Task, stitched: bool) -> None:
         """Nothing is seen yet."""
@@ -45,7 +45,8 @@ class GridViewpoint:
             self.known.update(observation)
 
     def act(self, output: int) -> Move:
-        """Remember a move."""
+        """Remember a move, and no more of the look than is on the map."""
+        del self.observation  # or it would be carried to the next decision
         self.move = output
         return Move(output)
 

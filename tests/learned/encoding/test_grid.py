@@ -28,10 +28,12 @@ def test_the_outputs_are_the_moves() -> None:
 
 def test_a_move_is_remembered(draw: Callable[..., GridWorld]) -> None:
     """Before the first there is none."""
-    viewpoint = GridEncoding(Vin(checkpoint="none")).start(draw("S..\n..G").task)
-    assert viewpoint.move == STILL
-    assert [viewpoint.act(output) for output in range(4)] == list(Move)
-    assert viewpoint.move == Move.LEFT
+    world = draw("S..\n..G")
+    for move in Move:
+        viewpoint = seen_from(GridEncoding(Vin(checkpoint="none")), world)
+        assert viewpoint.move == STILL
+        assert viewpoint.act(int(move)) is move
+        assert viewpoint.move == move
 
 
 @pytest.mark.parametrize(("stitched", "carried"), [(True, 6), (False, 0)])
