@@ -29,8 +29,7 @@ name: small
 network: {vin: {size: [5, 5], iterations: 2}}
 maps: {"my_package.salt:Salt": {size: 7, share: 0.1}}
 budget: {steps: 8}
-batches: 1
-batch: 2
+learning: {imitation: {batches: 1, batch: 2}}
 validation: {episodes: 2, every: 1}
 """
 

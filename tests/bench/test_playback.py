@@ -58,7 +58,7 @@ def test_an_episode_of_another_machine_is_replayed(make: Make, tmp_path: Path) -
     """It stays current under the versions that `run.json` tells; the last line says which differ."""
     scenario, store = make(), tmp_path / "store"
     variant = scenario.variants[0]
-    with recording(store) as recorder, noted(store, scenario, 1):
+    with recording(store, ()) as recorder, noted(store, scenario, 1):
         run = read_run(store)
         there = run["sessions"][0]["versions"]
         there["numpy"] = "1"
