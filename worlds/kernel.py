@@ -57,9 +57,9 @@ def summing(function: F) -> F:
 
 def callback(loop: Callable[[Any], None]) -> int:
     """The address of a loop of one pointer, compiled for callers outside of Python; the code stays."""
-    compiled = numba_doors.callback(loop, _Forms(loop, {}))
-    _CALLBACKS.append(compiled)
-    return int(compiled.address)
+    address, code = numba_doors.callback(loop, _Forms(loop, {}))
+    _CALLBACKS.append(code)
+    return address
 
 
 def used() -> Path | None:

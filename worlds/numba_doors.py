@@ -2,7 +2,8 @@
 
 Numba hands its compiled code to no cache but its own. So `kernel` uses names that a new version may change without a
 word: then kernels are compiled by each process for itself, or by none. That is why pyproject.toml has a ceiling on the
-version of Numba. Who raises it runs tests/worlds/test_kernel.py, where each of these doors is used.
+version of Numba. Who raises it runs tests/worlds/test_kernel.py and tests/learned/kernels/test_native.py, where each of
+these doors is used.
 """
 
 import pickle
@@ -11,7 +12,10 @@ from typing import Any, Protocol
 
 from numba import types
 from numba.core.ccallback import CFunc
+from numba.core.codegen import JITCPUCodegen
 from numba.core.compiler import CompileResult
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
 
@@ -38,15 +42,33 @@ def store_of(compiled: object) -> object:
     return getattr(compiled, "_cache", None)
 
 
-def callback(loop: Callable[[Any], None], store: Store) -> Any:
-    """A loop of one pointer, compiled for callers outside of Python; its code stays as long as the result.
+def callback(loop: Callable[[Any], None], store: Store) -> tuple[int, object]:
+    """The address of a loop of one pointer, compiled for callers outside of Python, and what its code stays with.
 
-    `numba.cfunc` compiles at once, before a store can be attached.
+    LLVM keeps the first of all functions of one name in an engine: a loop would call the kernels that were compiled
+    before it where the same loop, read from a store, calls the copies that came with it, which were optimised once more
+    and may round otherwise. So the code that runs always comes from the packed form, into an engine for itself.
     """
-    compiled: Any = CFunc(loop, ((types.voidptr,), types.void), {}, {})
-    attach(compiled, store)
-    compiled.compile()
-    return compiled
+    with global_compiler_lock:
+        signature, context = types.void(types.voidptr), _apart()
+        form = store.load_overload(signature, context)
+        if form is None:
+            fresh = _compiled(loop, signature)
+            store.save_overload(signature, fresh)
+            form = unpacked(packed(fresh), context)
+        return form.library.get_pointer_to_function(form.fndesc.llvm_cfunc_wrapper_name), form
+
+
+def _apart() -> Any:
+    """What forms are unpacked in, with an engine that has no code yet."""
+    codegen: Any = JITCPUCodegen
+    return cpu_target.target_context.subtarget(_internal_codegen=codegen("fogbench"))
+
+
+def _compiled(loop: Callable[[Any], None], signature: Any) -> Any:
+    """The form of a loop, in the engine of all others. `numba.cfunc` would ask no store before."""
+    compiled: Any = CFunc(loop, (signature.args, signature.return_type), {}, {})
+    return compiled._compile_uncached()  # noqa: SLF001  `compile` would run it there
 
 
 def is_portable(form: Any) -> bool:

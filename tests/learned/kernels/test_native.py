@@ -1,7 +1,11 @@
 """Jobs run by PyTorch's threads are all done, each of their blocks once."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -70,3 +74,47 @@ def test_without_openmp(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where no OpenMP library is found, the same is done in the calling thread."""
     monkeypatch.setattr(native, "_PARALLEL", None)
     test_every_block_is_done_once(5, torch.float64)
+
+
+WRITE = """
+import sys
+import torch
+from fogbench.learned.dnc.heads import Heads
+from fogbench.learned.dnc.job import JOB, sizes_of, state_of, tape_of
+from fogbench.learned.dnc.layout import layout
+from fogbench.learned.dnc.rows import write
+from fogbench.learned.kernels.native import Loop
+from fogbench.worlds.kernel import kernel
+
+@kernel
+def once(number, job, block):
+    old = state_of(number, job.old, job.old_links, job, block)
+    new = state_of(number, job.new, job.new_links, job, block)
+    write(sizes_of(job), tape_of(number, job, block).write_heads, old.memory, new.write_weights, new.memory)
+
+@kernel
+def twice(number, job, block):
+    once(number, job, block)
+    once(number, job, block)
+
+lies = layout(Heads(writes=2), 8, (3,))
+random = torch.Generator().manual_seed(0)
+tape, old, new, links = (torch.rand(size, generator=random) for size in (lies.tape, lies.rest, lies.rest, lies.links))
+for work in [twice, once] if sys.argv[1:] else [once]:
+    Loop(work, JOB).run(new.dtype, lies.blocks, lies.sizes, (None, old, links, new, links, None, tape))
+print(new.numpy().tobytes().hex())
+"""
+"""Prints what a kernel makes of which the optimiser makes other code in a loop than by itself."""
+
+
+def test_a_loop_computes_the_same_in_all_processes(tmp_path: Path) -> None:
+    """Bit for bit: where it is compiled, kept or not, where it is read, and where its kernels were in use before."""
+    (tmp_path / "script.py").write_text(WRITE)
+    results = [
+        subprocess.check_output(
+            [sys.executable, "script.py", *others], cwd=tmp_path, env={**os.environ, "NUMBA_CACHE_DIR": place}
+        )
+        for place, *others in [("/proc/kernels",), ("kernels",), ("kernels",), ("kernels", "before")]
+    ]
+    assert results[0]
+    assert results == results[:1] * 4
