@@ -9,7 +9,9 @@ from rich.console import Console
 from fogbench.bench.playing.loop import episode_world
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.several import each, read_all, say
+from fogbench.planners import Reference, judge_of, reference_of
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.tables import imported
 from fogbench.worlds.types import MapError
 
 
@@ -43,8 +45,12 @@ def refuse_too_many(scenario: Scenario) -> None:
 
 
 def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
+    for what in (judge_of(variant.kind), reference_of(variant.kind)):
+        if isinstance(what, Reference):
+            imported(what.settings, f"{scenario.path}: {variant.name}: the reference")
     try:
         world = episode_world(variant, 0)
+        optimum = world.shortest()
     except MapError as error:
         raise Mistake(f"{scenario.path}: {variant.name}: {error}.") from None
     except Exception as error:
@@ -53,7 +59,7 @@ def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
     playing = sum(not entry.skipped for entry in variant.agents)
     yield (
         f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "
-        f"the first has an optimum of {world.shortest():g} and a budget of {world.task.budget.steps} steps"
+        f"the first has an optimum of {optimum:g} and a budget of {world.task.budget.steps} steps"
     )
     for entry in variant.agents:
         if entry.skipped:

@@ -46,7 +46,7 @@ def examine() -> None:
 
 def rehearse() -> None:
     """Play an episode of every shipped agent that can play here, so that all its kernels are compiled and kept."""
-    for name, kind in KINDS.items():
+    for name, kind in ((name, kind) for name, kind in KINDS.items() if kind.rehearsal):
         text = f"name: rehearsal\nkind: {name}{kind.rehearsal}agents: [{AGENTS}]\nepisodes: 1\n"
         scenario = read_scenario(text, Path(__file__))
         for variant in scenario.variants:

@@ -37,7 +37,11 @@ def replay_recorded(
     row = chosen_row(scenario, variant, agent, episode, folder)
     most = PANELS if kind == ".png" else FRAMES
     steps = {round(step) for step in np.linspace(0, row["steps"], min(most, row["steps"] + 1)).tolist()}
-    drawn, end = _pictures(retrace(variant, row), steps)
+    try:
+        drawn, end = _pictures(retrace(variant, row), steps)
+    except Exception as error:
+        told = f"got {type(error).__name__}: {error}; expected a world that can be drawn"
+        raise Mistake(f"{agent} in {variant.name}, episode {episode}: {told}.") from error
     verify(row, end)
     told = f"{agent} in {variant.name}, episode {episode}: {row['steps']} steps, optimum {row['shortest']:g}."
     if kind == ".png":

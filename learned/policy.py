@@ -92,10 +92,10 @@ class Policy(Settings):
         return agent
 
     def uses(self) -> tuple[str, ...]:
-        """Modules that play for it and that no import statement names: of its agent, its network and its encoding."""
+        """What plays for it and no import statement names: the module of its agent, its network and its encoding."""
         encodings = {**registered(ENCODED), **ENCODINGS}
         targets = [self.made_of, *(encodings[kind] for kind in sorted(self.kinds) if kind in encodings)]
-        return (AGENT, *(target.partition(":")[0] for target in targets if target))
+        return AGENT, *filter(None, targets)
 
     def check(self, extent: tuple[float, ...] | None) -> None:
         """Hold it against the extent of all maps that it is to play on; None: they differ.
@@ -154,6 +154,7 @@ class Policy(Settings):
 
     def _check(self, info: ValidationInfo) -> None:
         """Whatever is wrong with the settings and the weights is told when they are read."""
+        self._check_kinds()
         usual = {name: field.default for name, field in type(self).model_fields.items()}
         if odd := sorted(name for name in self.idle() if getattr(self, name) != usual[name]):
             raise Mistake(f"no {odd[0]}, which means nothing to such a network")
@@ -164,6 +165,15 @@ class Policy(Settings):
         elif self.checkpoint != NONE:
             place = checkpoint.place_of(self.checkpoint)
             checkpoint.hold_weights(place, self._weights, checkpoint.forms(shapes))
+
+    def _check_kinds(self) -> None:
+        """Unless it says itself what it sees, its one kind of world must say so."""
+        if type(self).encoding is not Policy.encoding:
+            return
+        if len(self.kinds) != 1:
+            raise Mistake("a network of one kind of world, or one with an encoding of its own")
+        if not self.kinds & {*registered(ENCODED), *ENCODINGS}:
+            raise Mistake(f"a network of a kind of world that has an encoding (this one is of {', '.join(self.kinds)})")
 
     def _built(self) -> Any:
         """The network with its weights."""

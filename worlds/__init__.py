@@ -28,7 +28,7 @@ class Kind(NamedTuple):
     maps: str = ""
     """Another kind, whose map families can make worlds of this one too; empty: no other's."""
     rehearsal: str = ""
-    """YAML of small worlds, in which `fogbench doctor` lets every agent play once; empty: it does not."""
+    """YAML of small worlds, in which `fogbench doctor` lets all agents that ship play once; empty: it does not."""
 
 
 KINDS = {

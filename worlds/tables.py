@@ -6,6 +6,8 @@ from importlib.metadata import entry_points
 from pkgutil import resolve_name
 from typing import Any
 
+from fogbench.worlds.mistake import Mistake
+
 
 @cache
 def registered(group: str) -> dict[str, str]:
@@ -20,6 +22,22 @@ def named(table: Mapping[str, Any], group: str, name: str) -> Any | None:
         table: names to things, or to `module:object`; it comes first and cannot be replaced.
         group: of entry points.
         name: what is looked for.
+
+    Raises:
+        Mistake: what is named cannot be imported.
     """
     found = table.get(name) or registered(group).get(name)
-    return resolve_name(found) if isinstance(found, str) else found
+    return imported(found, f"{group}: {name}") if isinstance(found, str) else found
+
+
+def imported(target: str, place: str) -> Any:
+    """What stands at `module:object`.
+
+    Raises:
+        Mistake: nothing does, or it cannot be imported; the text says who wants it.
+    """
+    try:
+        return resolve_name(target)
+    except Exception as error:  # noqa: BLE001  a user's module may raise anything
+        told = f"got {target}, which raises {type(error).__name__}: {error}"
+        raise Mistake(f"{place}: {told}; expected something that can be imported.") from None

@@ -12,13 +12,15 @@ Only the episode loop and the metrics ever hold a `World`. What an agent may kno
 
 from collections.abc import Mapping, Sequence
 from enum import Enum, IntEnum
-from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.picture import Picture
+
+if TYPE_CHECKING:
+    from fogbench.worlds.picture import Picture
 
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 """The three values of a cell in a view and in a known map."""
@@ -175,7 +177,7 @@ class World(Protocol):
     def action(self, *numbers: float) -> Any:
         """The action that a record has as these numbers."""
 
-    def picture(self, known: Any, observation: Observation, path: Sequence[Any]) -> Picture:
+    def picture(self, known: Any, observation: Observation, path: Sequence[Any]) -> "Picture":
         """What a moment looks like.
 
         Args:

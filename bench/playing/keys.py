@@ -16,8 +16,8 @@ from fogbench.planners import judge_of, reference_of
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
 
-LOOP = "fogbench.bench.playing.loop"
-"""What says what an episode is."""
+DECIDE = ("fogbench.bench.playing.loop", "fogbench.bench.playing.facts")
+"""What says what an episode is, and what its row says of its world."""
 
 Versions = Mapping[str, str]
 """Of packages, by the name that import statements have for them."""
@@ -30,7 +30,7 @@ def world_key(variant: Variant, versions: Versions | None = None) -> str:
         variant: of a scenario.
         versions: of the packages; None: those that are installed here.
     """
-    words = variant.seed, variant.family.words(), variant.conditions.model_dump_json()
+    words = variant.seed, variant.kind, variant.family.words(), variant.conditions.words()
     return digest(*words, _used(_of_world(variant), versions))
 
 
@@ -55,7 +55,7 @@ def packages(scenario: Scenario) -> list[str]:
 
 def _of_world(variant: Variant) -> tuple[type | str, ...]:
     """What makes an episode, without its agent."""
-    return type(variant.family), type(variant.conditions), *_measures(variant), LOOP
+    return type(variant.family), type(variant.conditions), *_measures(variant), *DECIDE
 
 
 def _measures(variant: Variant) -> tuple[type | str, ...]:
@@ -79,6 +79,8 @@ def _settings(entry: Entry) -> Settings:
 
 def _used(starts: Iterable[type | str], versions: Versions | None) -> str:
     """The digest of all that is used."""
+    starts = list(starts)
     contents, names = closure(*starts)
     found = installed(names) if versions is None else versions
-    return digest(*chain(*sorted(contents)), *(f"{name} {found.get(name, '')}" for name in sorted(names)))
+    classes = [start.__qualname__ if isinstance(start, type) else start for start in starts]
+    return digest(*classes, *chain(*sorted(contents)), *(f"{name} {found.get(name, '')}" for name in sorted(names)))

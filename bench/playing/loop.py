@@ -3,6 +3,8 @@
 All that it imports decides, beside the world, the agent and the judge, what an episode is; keys of episodes cover it.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from operator import index
@@ -37,6 +39,10 @@ class Record:
     detail: str = ""
 
 
+class ClerkError(Exception):
+    """What stands beside an episode has failed, and not its agent; the text is one line."""
+
+
 class Clerk:
     """Sits beside an episode, untimed: writes down how far the goal was, and what a judge says of each decision."""
 
@@ -47,16 +53,32 @@ class Clerk:
 
     def stands(self, state: Any) -> None:
         """The agent decides in a state."""
-        self.record.remaining.append(float(self.world.remaining(state)))
+        with _blamed("the world, asked what remains to the goal"):
+            self.record.remaining.append(float(self.world.remaining(state)))
 
     def decided(self, observation: Any, action: Any) -> None:
         """An action was carried out."""
-        if self.judge is not None:
+        if self.judge is None:
+            return
+        with _blamed("the judge"):
             self.judge.see(observation)
             judged, wrong, strictly_wrong = self.judge.judge(action)
-            self.record.judged += judged
-            self.record.wrong_decisions += wrong
-            self.record.strict_wrong += strictly_wrong
+            self.record.judged += bool(judged)
+            self.record.wrong_decisions += bool(wrong)
+            self.record.strict_wrong += bool(strictly_wrong)
+
+
+@contextmanager
+def _blamed(who: str) -> Iterator[None]:
+    """An error in here is none of the agent's.
+
+    Raises:
+        ClerkError: there was one.
+    """
+    try:
+        yield
+    except Exception as error:
+        raise ClerkError(f"{who} raised {type(error).__name__}: {error}") from error
 
 
 def roll(world: World, agent: Agent, luck: np.random.Generator, record: Record, clerk: Clerk | None) -> Outcome:

@@ -25,7 +25,7 @@ _distributions = cache(packages_distributions)  # it takes a while, and only som
 def difference(names: Iterable[str], recorded: Mapping[str, str]) -> str:
     """What packages were recorded with and what is here, in one line; empty where that is the same."""
     here = installed(names)
-    odd = [name for name in sorted(names) if here.get(name) != recorded.get(name)]
+    odd = [name for name in sorted(names) if name in recorded and here.get(name) != recorded[name]]
     if not odd:
         return ""
     return f"Recorded with {_listed(odd, recorded)}; here {'are' if len(odd) > 1 else 'is'} {_listed(odd, here)}."

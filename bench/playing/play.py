@@ -1,21 +1,20 @@
 """One episode of a scenario, from its variant and agent to a row; whatever the agent does, there is one."""
 
-from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache, lru_cache
 from inspect import getfile
 from itertools import chain
-from pkgutil import resolve_name
 from traceback import extract_tb
 from typing import Any
 
 from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.facts import facts, numbers
 from fogbench.bench.playing.keys import agent_key, world_key
-from fogbench.bench.playing.loop import Clerk, Record, episode_stream, episode_world, start_and_roll
+from fogbench.bench.playing.loop import Clerk, ClerkError, Record, episode_stream, episode_world, start_and_roll
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.tables import AGENT
 from fogbench.bench.reading.variant import Entry
-from fogbench.planners import judge_of, reference_of
+from fogbench.planners import judge_of
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import AgentSettings, Outcome, World
 
@@ -36,6 +35,8 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
     try:
         _warm_up(variant, entry)
         start_and_roll(world, entry.settings, variant, episode, record, clerk)
+    except ClerkError:
+        raise
     except BaseException as error:  # noqa: BLE001  an agent may raise anything, and nobody else speaks to a worker
         record.outcome, record.detail = Outcome.CRASHED, _sentence(error, entry.settings)
     return _episode(scenario, variant, entry, episode, workers, record)
@@ -44,7 +45,7 @@ def play(scenario: Scenario, variant: Variant, entry: Entry, episode: int, worke
 def prepare(scenario: Scenario) -> None:
     """Compile what ships with the project before the limit of any episode counts; a user's agent warms up under it."""
     for variant in scenario.variants[:1]:
-        _facts(variant, 0)
+        facts(variant, 0)
         for entry in variant.agents:
             if entry.settings is not None and entry.target in AGENT.shipped.values():
                 _warm_up(variant, entry)
@@ -57,38 +58,9 @@ def lost(
     return _episode(scenario, variant, entry, episode, workers, Record(outcome=outcome, detail=detail))
 
 
-def numbers(action: Any) -> tuple[float, ...]:
-    """An action as a row has it."""
-    return tuple(float(x) for x in (action if isinstance(action, tuple) else (action,)))
-
-
 def _judge(variant: Variant, world: World) -> Any:
     judge = judge_of(variant.kind)
     return judge(world.task) if judge else None
-
-
-@lru_cache(maxsize=16)
-def _facts(variant: Variant, episode: int) -> Mapping[str, Any]:
-    """What the record of an episode says of its world, whoever plays."""
-    world = episode_world(variant, episode)
-    return {
-        "kind": world.task.kind,
-        "budget_steps": world.task.budget.steps,
-        "straight": world.straight(),
-        "shortest": world.shortest(),
-        "reference_length": _reference_length(world, variant, episode),
-        "covariates": dict(world.covariates()),
-    }
-
-
-def _reference_length(world: World, variant: Variant, episode: int) -> float | None:
-    """Length that the reference of the kind travels in the same world; None where it does not reach the goal."""
-    reference = reference_of(variant.kind)
-    if reference is None:
-        return None
-    record = Record()
-    start_and_roll(world, resolve_name(reference.settings)(), variant, episode, record, None)
-    return record.length if record.outcome is Outcome.REACHED else None
 
 
 @lru_cache(maxsize=16)
@@ -140,6 +112,6 @@ def _episode(scenario: Scenario, variant: Variant, entry: Entry, episode: int, w
         workers=workers,
         agent_key=agent_key(entry),
         world_key=world_key(variant),
-        **_facts(variant, episode),
+        **facts(variant, episode),
         **kept,
     )

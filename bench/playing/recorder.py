@@ -8,9 +8,10 @@ from time import monotonic
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fogbench.bench.playing.episode import Episode, table
+from fogbench.bench.playing.episode import SCHEMA, Episode, table
 from fogbench.bench.playing.store import parts, unwritable, write
 from fogbench.worlds import files
+from fogbench.worlds.mistake import Mistake
 
 ROWS = 500
 """Rows that are held back at most."""
@@ -65,9 +66,11 @@ def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
         covariates: of all kinds of world that will be recorded; they are columns of every part.
 
     Raises:
-        Mistake: another run has it open.
+        Mistake: another run has it open, or a covariate has the name of a column.
         StoreError: it cannot be written.
     """
+    if taken := sorted(set(covariates) & set(SCHEMA.names)):
+        raise Mistake(f"covariates: got {', '.join(taken)}; expected names that no column has.")
     with ExitStack() as held:
         try:
             held.enter_context(files.alone(folder, "run"))

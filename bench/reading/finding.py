@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from fogbench.bench.reading.blocks import Block, read_block
 from fogbench.bench.reading.page import blocks
-from fogbench.bench.reading.plugins import PluginError, load, load_kind, target
+from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind, target
 from fogbench.bench.reading.positions import Fault, Value, join
 from fogbench.bench.reading.tables import FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable, near
@@ -83,6 +83,10 @@ class Finder:
         A family that cannot be found is taken for one of the first kind, so that the rest of the page is read.
         """
         possible = cast(MapFamily, family).kinds if family else tuple(KIND.targets())
+        if not (isinstance(possible, tuple) and possible and all(isinstance(kind, str) for kind in possible)):
+            told = f"a map family whose kinds are a tuple of names; this one has {possible!r}"
+            self.faults.append(_of_family(page, told))
+            return "", None
         said = page.child("kind")
         name = str(said.content) if said and said.content and not said.unset else possible[0]
         if self.skipped:  # of a family that is missing, nobody knows the kind
@@ -92,19 +96,20 @@ class Finder:
             if said and not {name, kind.maps} & set(possible):
                 told = f"a kind that these maps can be: {' or '.join(possible)}"
                 self.faults.append(said.wrong(told, near(name, possible)))
-            return name, load(KIND, name, kind.conditions)
+            return name, load_conditions(name, kind)
         except PluginError as error:
-            self.faults.append(said.wrong(str(error), error.near) if said else _of_no_kind(page, name))
+            told = f"a map family of the kind {' or '.join(KIND.targets())}; this one is of {name!r}"
+            unknown = _of_family(page, told if name not in KIND.targets() else str(error))
+            self.faults.append(said.wrong(str(error), error.near) if said else unknown)
         except Unavailable as error:
             self.skipped = f"{name} {error}"
         return name, None
 
 
-def _of_no_kind(page: Value, kind: str) -> Fault:
-    """A map family makes worlds of a kind that there is none of."""
-    maps = page.fields()["maps"]
-    told = f"a map family of the kind {' or '.join(KIND.targets())}; this one is of {kind!r}"
-    return maps.wrong_key(next(iter(maps.fields())), told)
+def _of_family(page: Value, expected: str) -> Fault:
+    """What is wrong with the map family of a page, at its name."""
+    maps = page.fields().get("maps")
+    return maps.wrong_key(next(iter(maps.fields())), expected) if maps and maps.fields() else page.wrong(expected)
 
 
 def opened(block: Value) -> Value:

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TypeVar
 
 from fogbench.bench.reading.blocks import raised
-from fogbench.bench.reading.tables import EXTRAS, PACKAGES, Table
+from fogbench.bench.reading.tables import EXTRAS, KIND, PACKAGES, Table
 from fogbench.worlds import KINDS, Kind
 from fogbench.worlds.mistake import Unavailable, near, one_of
 from fogbench.worlds.settings import Settings
@@ -65,6 +65,19 @@ def load(table: Table, name: str, target: str) -> type[Settings]:
         raise PluginError(f"a class derived from fogbench.Settings, with {', '.join(table.members)}")
     if lacks:
         raise PluginError(f"a class with {', '.join(table.members)}; it lacks {', '.join(lacks)}")
+    return found
+
+
+def load_conditions(name: str, kind: Kind) -> type[Settings]:
+    """The class of the conditions of a kind of world.
+
+    Raises:
+        PluginError: there is none, or it says no budget.
+        Unavailable: it needs a package that is not installed.
+    """
+    found = load(KIND, name, kind.conditions)
+    if "budget" not in found.model_fields:
+        raise PluginError(f"a kind of world whose conditions have a budget; those of {name} have none")
     return found
 
 

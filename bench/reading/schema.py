@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from fogbench.bench.reading.page import VARIED, Page, blocks
-from fogbench.bench.reading.plugins import PluginError, load, load_kind
+from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind
 from fogbench.bench.reading.shapes import Lenient, Schema
 from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable
@@ -69,7 +69,7 @@ def _classes(table: Table) -> dict[str, type[Settings]]:
     found: dict[str, type[Settings]] = {}
     for name, target in table.targets().items():
         try:
-            found[name] = load(table, name, load_kind(name).conditions if table is KIND else target)
+            found[name] = load_conditions(name, load_kind(name)) if table is KIND else load(table, name, target)
         except (PluginError, Unavailable):
             continue
     return found

@@ -23,7 +23,8 @@ class Reading(Finder, Generic[Keys]):
         self.kind, conditions = self.kind_class(page, found[0] if found else None)
         self.page = cast(Keys | None, self.block(with_blocks(keys, conditions), page))
         self.family = cast(MapFamily | None, self.block(*found)) if found else None
-        self.around["extent"] = self.family.extent() if self.family else None
+        own = self.family if self.family and self.kind in self.family.kinds else None  # its extents are of its kinds
+        self.around["extent"] = own.extent() if own else None
         self.conditions = self._conditions(conditions, page)
 
     def _conditions(self, conditions: type[Settings] | None, page: Value) -> Settings | None:

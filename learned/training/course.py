@@ -8,6 +8,7 @@ In its folder
 
 import io
 import json
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from time import perf_counter
@@ -159,4 +160,6 @@ class Course:
 
 
 def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:
-    return sum(variant[metric] for variant in variants.values()) / len(variants)
+    """Over the variants that have it; 0 where none does, so that what nobody judges counts for nothing."""
+    known = [variant[metric] for variant in variants.values() if not math.isnan(variant[metric])]
+    return sum(known) / max(1, len(known))

@@ -20,6 +20,7 @@ from fogbench.learned.encoding.encoding import Viewpoint
 from fogbench.learned.networks.network import Network, rows
 from fogbench.learned.policy import Policy
 from fogbench.planners.judging import Teacher
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Array, World
 
 
@@ -70,8 +71,8 @@ class Rollout(NamedTuple):
 class Run:
     """One world, and who teaches there."""
 
-    def __init__(self, world: World, luck: np.random.Generator, teacher: Teacher) -> None:
-        """Before the first step; `luck` is for the sensor and the slip."""
+    def __init__(self, world: World, luck: np.random.Generator, teacher: Teacher | None) -> None:
+        """Before the first step; `luck` is for the sensor and the slip. Without a teacher nothing is right."""
         self.world = world
         self.luck = luck
         self.teacher = teacher
@@ -79,12 +80,21 @@ class Run:
         self.steps = 0
         self.reached = False
 
-    def look(self, viewpoint: Viewpoint) -> Array:
-        """Sense, and let the viewpoint and the teacher see: which outputs are right, [A] bool."""
+    def look(self, viewpoint: Viewpoint, outputs: int) -> Array:
+        """Sense, and let the viewpoint and the teacher see: which of the outputs are right, [A] bool.
+
+        Raises:
+            Mistake: the teacher says something else.
+        """
         observation = self.world.sense(self.state, self.luck)
         viewpoint.see(observation)
+        if self.teacher is None:
+            return np.zeros(outputs, np.bool_)
         self.teacher.see(observation)
-        targets: Array = self.teacher.targets()
+        targets: Array = np.asarray(self.teacher.targets())
+        if targets.dtype != np.bool_ or targets.shape != (outputs,):
+            told = f"got targets of {targets.dtype} {list(targets.shape)}; expected bool [{outputs}]"
+            raise Mistake(f"{type(self.teacher).__name__}: {told}, one for each output.")
         return targets
 
     def step(self, viewpoint: Viewpoint, output: int) -> bool:
@@ -105,7 +115,7 @@ def roll_out(settings: Policy, network: Network, episodes: Sequence[Run], choose
     live, state = np.arange(len(episodes)), network.blank((len(episodes),))
     decisions: list[tuple[Tensor, Tensor, Tensor]] = []
     while playing:
-        targets = np.stack([episode.look(viewpoint) for episode, viewpoint in playing])  # [b, A]
+        targets = np.stack([run.look(viewpoint, len(encoding.outputs)) for run, viewpoint in playing])  # [b, A]
         inputs = encoding.encode([viewpoint for _, viewpoint in playing])
         scores, state = network(inputs.to(settings.device), state)
         turn = Turn(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))

@@ -31,10 +31,13 @@ class Imitator:
         """Before the first batch, with fresh weights or those of the recipe's checkpoint.
 
         Raises:
-            Mistake: hindsight is to teach where it cannot.
+            Mistake: nobody can teach in its worlds as the recipe says.
         """
-        for worlds, easy in recipe.lessons if learning.teacher.hindsight else ():
-            teacher_in(draw_world(worlds, easy, "training", 0, 0).world, hindsight=True)
+        for worlds, easy in recipe.lessons:
+            try:
+                teacher_in(draw_world(worlds, easy, "training", 0, 0).world, hindsight=learning.teacher.hindsight)
+            except Mistake as error:
+                raise Mistake(f"{recipe.name}: {error}.") from None
         self.recipe, self.learning = recipe, learning
         self.network = load(recipe.network)
         self.optimiser = OPTIMISERS[learning.optimiser](self.network.parameters())

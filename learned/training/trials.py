@@ -1,5 +1,6 @@
 """Worlds to learn on and to be tried on, and how a network does in those that were held out."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -50,15 +51,14 @@ def refuse_unplayable(recipe: Recipe) -> None:
     """Draw a world of each lesson and variant, so that what cannot be played is told before the first batch.
 
     Raises:
-        Mistake: there is no such world, the network does not fit it, nobody knows what is right there, or its tasks are
-            a list, of which those to learn on, those to be tried on, and those that a scenario tests on are the same.
+        Mistake: there is no such world, the network does not fit it, or its tasks are a list, of which those to learn
+            on, those to be tried on, and those that a scenario tests on are the same.
     """
     for place, worlds, family in recipe.places():
         try:
             listed = family.tasks(worlds.conditions)
             world, _ = draw_world(worlds, family, "training", 0, 0)
             recipe.network.encoding().start(world.task)
-            teacher_in(world)
         except Mistake as error:
             raise Mistake(f"{recipe.name}: {place}: {error}.") from None
         if listed is not None:
@@ -67,7 +67,7 @@ def refuse_unplayable(recipe: Recipe) -> None:
 
 
 def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
-    """How a network does in the held-out episodes of each variant: success and test error [%]."""
+    """How a network does in held-out episodes of each variant: success and test error [%]; nan where none is judged."""
     scores = {}
     for name, worlds in recipe.held_out.items():
         drawn = [
@@ -75,8 +75,14 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
             for number in range(recipe.validation.episodes)
         ]
         with torch.no_grad():
-            episodes = [Run(world, luck, teacher_in(world)) for world, luck in drawn]
+            episodes = [Run(world, luck, _judge(world)) for world, luck in drawn]
             rollout = roll_out(recipe.network, network, episodes, greedy)
-        wrong = int(rollout.wrong().sum()) / max(1, int(rollout.judged.sum()))
+        judged = int(rollout.judged.sum())
+        wrong = int(rollout.wrong().sum()) / judged if judged else math.nan
         scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
     return scores
+
+
+def _judge(world: World) -> Teacher | None:
+    """Who counts wrong decisions in a world, if anybody can."""
+    return teacher_in(world) if judge_of(world.task.kind) else None

@@ -52,7 +52,7 @@ def test_a_planner_of_ours_uses_what_it_imports() -> None:
     found = closure(RandomWalk)
     assert names(found) == {
         f"fogbench.{name}"
-        for name in ("planners.random_walk", "worlds.mistake", "worlds.picture", "worlds.settings", "worlds.types")
+        for name in ("planners.random_walk", "worlds.mistake", "worlds.settings", "worlds.types")
     }
     assert found.packages == {"numpy", "pydantic"}
     assert {"fogbench.planners.route", "fogbench.worlds.kernel"} < names(closure(AStar))

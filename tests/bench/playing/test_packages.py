@@ -20,7 +20,7 @@ def test_packages_go_by_the_names_that_they_are_imported_by() -> None:
     [
         ({}, ""),
         ({"numpy": "1"}, "Recorded with numpy 1; here is numpy {numpy}."),
-        ({"numpy": None}, "Recorded with no numpy; here is numpy {numpy}."),
+        ({"numpy": None}, ""),
         (
             {"numpy": "1", "numba": "3", "fog_lamp": "2"},
             "Recorded with fog_lamp 2, numba 3 and numpy 1; here are no fog_lamp, numba {numba} and numpy {numpy}.",
@@ -32,7 +32,7 @@ def test_packages_go_by_the_names_that_they_are_imported_by() -> None:
     ],
 )
 def test_differences_are_told_in_one_line(recorded: dict[str, str | None], told: str) -> None:
-    """Of the packages that are asked for alone, in the order of their names; nothing where all is the same."""
+    """Of the packages that are asked for alone, in the order of their names; nothing of what was not written down."""
     here = installed(["numpy", "numba"])
     then = {name: found for name, found in {**here, "torch": "0", **recorded}.items() if found}
     assert difference(["numpy", "numba", "fog_lamp"], then) == told.format(**here)

@@ -118,7 +118,8 @@ def played(policy: Policy, worlds: list[GridWorld], *, hindsight: bool = False) 
 def first_look(world: GridWorld, *, hindsight: bool) -> list[str]:
     """The moves that count at the start."""
     (episode,) = episodes_in([world], hindsight=hindsight)
-    targets = episode.look(POLICIES[0].encoding().start(world.task))
+    encoding = POLICIES[0].encoding()
+    targets = episode.look(encoding.start(world.task), len(encoding.outputs))
     return [Move(move).name for move in np.flatnonzero(targets)]
 
 

@@ -6,7 +6,6 @@ RING = Kind(
     "ring_kind.conditions:RingConditions",
     unit="links",
     maps="grid",
-    rehearsal="\nmaps: {stations: {size: 9, cut: 0.5}}\nbudget: {steps: 20}\n",
 )
 
 REFERENCE = Reference("the shorter way", "ring_kind.walker:Walker")
