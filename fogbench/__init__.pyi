@@ -4,6 +4,9 @@ from .learned.encoding.grid_inputs import Inputs as Inputs
 from .learned.grid_policy import GridPolicy as GridPolicy
 from .learned.networks.network import Network as Network
 from .learned.policy import Policy as Policy
+from .learned.training.recipe import Learner as Learner
+from .learned.training.recipe import Recipe as Recipe
+from .learned.training.recipe import Student as Student
 from .planners import Reference as Reference
 from .planners.astar import glance as glance
 from .planners.astar import search as search

@@ -217,6 +217,36 @@ def test_a_mistake_names_the_blocks_of_the_kind(old: str, new: str, expected: st
     assert "Traceback" not in text
 
 
+@pytest.mark.parametrize(
+    ("file", "old", "new", "expected"),
+    [
+        ("judge.py", "right.any():", "right.all(0)[9]:", "ring: walker, episode 0: the judge raised IndexError: "),
+        ("judge.py", "class RingJudge", "class Judge", "fogbench.judges: ring: got ring_kind.judge:RingJudge, which "),
+        ("stations.py", '("ring",)', '"ring"', "a map family whose kinds are a tuple of names; this one has 'ring'"),
+        ("conditions.py", "budget: BudgetSettings", "limit: int = 9", "whose conditions have a budget; those of ring "),
+        ("conditions.py", '("stations",)', '("steps",)', "covariates: got steps; expected names that no column has."),
+        ("conditions.py", '("stations",)', "()", "covariates: got stations; expected none"),
+        ("world.py", "def remaining", "def rest", "ring: walker, episode 0: the world, asked what remains to the goal"),
+    ],
+)
+def test_a_mistake_in_the_package_is_blamed_on_it(
+    file: str, old: str, new: str, expected: str, command: Any, site: Path
+) -> None:
+    """One line that names it; no agent is said to have crashed, and there is no traceback."""
+    source = site / "ring_kind" / file
+    text = source.read_text()
+    assert old in text
+    source.write_text(text.replace(old, new))
+    try:
+        code, told = command("run", "faulty.yaml", faulty=MIXED.replace("name: mixed", "name: faulty"))
+    finally:
+        source.write_text(text)
+    assert code in {1, 2}
+    assert expected in told
+    assert "Traceback" not in told
+    assert "CRASHED" not in told
+
+
 def test_the_schema_and_the_list_have_it(command: Any) -> None:
     """Its block, its name, its family and its agent."""
     code, text = command("schema")

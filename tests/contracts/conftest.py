@@ -161,18 +161,36 @@ agent = planner = policy = family = settings
 
 
 @pytest.fixture
-def meetings(agent: AgentSettings, conditions: Callable[..., Any]) -> list[World]:
+def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
+    """Draws worlds of a kind, a few from each arena."""
+
+    def draw(kind: str) -> list[World]:
+        assert kind in ARENAS, f"the tables have {kind}; expected worlds for it in {__file__}"
+        fields = [(maps, conditions(steps=40, distance=(5, 30), **fields)) for maps, fields in ARENAS[kind]]
+        return [
+            maps.sample(np.random.default_rng(seed), seed, under) for maps, under in fields for seed in range(EPISODES)
+        ]
+
+    return draw
+
+
+@pytest.fixture
+def meetings(agent: AgentSettings, arena: Callable[[str], list[World]]) -> list[World]:
     """Worlds of all the kinds that an agent plays, a few from each arena."""
-    found = []
-    for kind in agent.kinds:
-        assert kind in ARENAS, f"{agent!r} plays {kind}; expected worlds for it in {__file__}"
-        for maps, fields in ARENAS[kind]:
-            under = conditions(steps=40, distance=(5, 30), **fields)
-            found += [maps.sample(np.random.default_rng(seed), seed, under) for seed in range(EPISODES)]
+    found = [world for kind in agent.kinds for world in arena(kind)]
     if getattr(agent, "reading", "") == "map":  # made for maps of one size
         found = [world for world in found if world.task.extent == agent.size]
     assert len(found) > 1
     return found
+
+
+@pytest.fixture
+def encoding(kind: str) -> Any:
+    """The encoding of a kind, as the first learned agent that plays it is shown its worlds."""
+    made = [(resolve_name(target), AGENTS[name][0]) for name, target in learned.LEARNED.items()]
+    shown = [policy.model_validate(fields).encoding() for policy, fields in made if kind in policy.kinds]
+    assert shown, f"no learned agent plays {kind}"
+    return shown[0]
 
 
 @pytest.fixture(scope="session")

@@ -51,8 +51,7 @@ def test_a_planner_of_ours_uses_what_it_imports() -> None:
     """Files above and below it, no table, no standard library, and packages by their names."""
     found = closure(RandomWalk)
     assert names(found) == {
-        f"fogbench.{name}"
-        for name in ("planners.random_walk", "worlds.mistake", "worlds.settings", "worlds.types")
+        f"fogbench.{name}" for name in ("planners.random_walk", "worlds.mistake", "worlds.settings", "worlds.types")
     }
     assert found.packages == {"numpy", "pydantic"}
     assert {"fogbench.planners.route", "fogbench.worlds.kernel"} < names(closure(AStar))

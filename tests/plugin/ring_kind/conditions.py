@@ -39,8 +39,8 @@ class RingConditions(Conditions):
     def ring(self, links: Array, start: int, goal: int) -> RingWorld | None:
         """The world of a task on a ring of links [N], or None where it does not fit."""
         links.setflags(write=False)
-        task = Task("ring", goal, None, self.budget.over(min((goal - start) % len(links), (start - goal) % len(links))),
-                    (len(links),))  # fmt: skip
+        straight = min((goal - start) % len(links), (start - goal) % len(links))
+        task = Task("ring", goal, None, self.budget.over(straight), (len(links),))
         world = RingWorld(links, start, task, self.track.slip)
         least, most = self.tasks.bounds(task.budget)
         return world if start != goal and least <= world.shortest() <= most else None
