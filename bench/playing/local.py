@@ -15,6 +15,7 @@ from pebble import ProcessExpired
 
 from fogbench.bench.playing import worker
 from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.loop import ClerkError
 from fogbench.bench.playing.pool import worker_pool
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
@@ -81,7 +82,7 @@ def _answer(future: Future[Episode], job: Job) -> Episode | Job:
         loss = Outcome.HUNG, f"no answer after {job.hard_seconds:g} s, ended from outside"
     elif isinstance(error, ProcessExpired):
         loss = Outcome.CRASHED, _death(error.exitcode)
-    elif isinstance(error, MapError):
+    elif isinstance(error, MapError | ClerkError):
         raise RunError(f"{place}: {error}.")
     else:
         raise RunError(f"{place}, {job.agent}: got {type(error).__name__}: {error}; expected no error but an agent's.")

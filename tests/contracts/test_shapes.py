@@ -15,7 +15,8 @@ def test_shapes_are_those_of_the_network(policy: Policy) -> None:
 
 
 def test_what_plays_is_named(policy: Policy) -> None:
-    """The modules that no import statement names are told: of the agent, the network and the encoding."""
+    """What no import statement names is told: the module of the agent, the network and the encoding."""
     task = Task("grid", (0, 0), None, Budget(1), getattr(policy, "size", (1, 1)))
-    plays = [policy.start(task, np.random.default_rng()), policy.network(), policy.encoding()]
-    assert policy.uses() == tuple(type(each).__module__ for each in plays)
+    agent = type(policy.start(task, np.random.default_rng()))
+    made = [type(each) for each in (policy.network(), policy.encoding())]
+    assert policy.uses() == (agent.__module__, *(f"{each.__module__}:{each.__qualname__}" for each in made))
