@@ -1,8 +1,10 @@
 """What every plug-in of the tables is tested with: examples of its settings, and worlds to play in.
 
-A new agent or map family needs a line in `AGENTS` or `FAMILIES` here; then all contracts are tested for it.
+A new agent or map family needs a line in `AGENTS` or `FAMILIES` here; then all contracts are tested for it. Agents of
+`tests/plugin/ring_kind`, a kind of world of another package, keep the same ones.
 """
 
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from pkgutil import resolve_name
@@ -37,8 +39,14 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     ],
     "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
     "cnn_memory": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
+    "walker": [{}],
 }
-"""Settings of every entry of `fogbench.planners.PLANNERS` and `fogbench.learned.LEARNED`, small enough to play fast."""
+"""Settings of every entry of `fogbench.planners.PLANNERS`, `fogbench.learned.LEARNED` and `FOREIGN`, fast to play."""
+
+FOREIGN = {"walker": "ring_kind.walker:Walker"}
+"""Agents of a kind of world of another package."""
+
+sys.path.append(str(Path(__file__).parents[1] / "plugin"))
 
 FAMILIES: dict[str, list[dict[str, Any]]] = {
     "blobs": [
@@ -118,14 +126,15 @@ def play() -> Callable[..., Iterator[Decision]]:
 
 
 EXAMPLES = {**AGENTS, **FAMILIES}
-AGENT_TABLE = {**planners.PLANNERS, **learned.LEARNED}
+OURS = {**planners.PLANNERS, **learned.LEARNED}
+AGENT_TABLE = {**OURS, **FOREIGN}
 TABLES = {**AGENT_TABLE, **worlds.FAMILIES}
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Run a test for all examples of all entries of the table that it asks for."""
     tables = {
-        "agent": AGENT_TABLE,
+        "agent": OURS if metafunc.module.__name__.endswith("one_view") else AGENT_TABLE,  # rings have their own test
         "planner": planners.PLANNERS,
         "policy": learned.LEARNED,
         "family": worlds.FAMILIES,
@@ -165,6 +174,8 @@ def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
     """Draws worlds of a kind, a few from each arena."""
 
     def draw(kind: str) -> list[World]:
+        if kind == "ring":
+            return _rings()
         assert kind in ARENAS, f"the tables have {kind}; expected worlds for it in {__file__}"
         fields = [(maps, conditions(steps=40, distance=(5, 30), **fields)) for maps, fields in ARENAS[kind]]
         return [
@@ -172,6 +183,13 @@ def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
         ]
 
     return draw
+
+
+def _rings() -> list[World]:
+    """A few rings with cut links, where a step may lead nowhere."""
+    under = resolve_name("ring_kind.conditions:RingConditions")(track={"slip": 0.2}, budget={"steps": 40})
+    family = resolve_name("ring_kind.stations:Stations")(size=11, cut=0.7)
+    return [family.sample(np.random.default_rng(seed), seed, under) for seed in range(2 * EPISODES)]
 
 
 @pytest.fixture
