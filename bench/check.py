@@ -9,9 +9,8 @@ from rich.console import Console
 from fogbench.bench.playing.loop import episode_world
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.several import each, read_all, say
-from fogbench.planners import Reference, judge_of, reference_of
+from fogbench.planners import judge_of, reference_settings
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.tables import imported
 from fogbench.worlds.types import MapError
 
 
@@ -45,9 +44,8 @@ def refuse_too_many(scenario: Scenario) -> None:
 
 
 def _outlook(scenario: Scenario, variant: Variant) -> Iterator[str]:
-    for what in (judge_of(variant.kind), reference_of(variant.kind)):
-        if isinstance(what, Reference):
-            imported(what.settings, f"{scenario.path}: {variant.name}: the reference")
+    judge_of(variant.kind)  # what cannot be imported is told now
+    reference_settings(variant.kind)
     try:
         world = episode_world(variant, 0)
         optimum = world.shortest()

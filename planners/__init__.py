@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from fogbench.worlds.tables import named
+from fogbench.worlds.tables import imported, named
 
 PLANNERS = {
     "astar": "fogbench.planners.astar:AStar",
@@ -40,6 +40,16 @@ SPEEDS = {"A* over an empty 512x512 map": "fogbench.planners.speed:search_empty_
 def reference_of(kind: str) -> Reference | None:
     """The reference of a kind; None: its episodes have none."""
     return named(REFERENCES, "fogbench.references", kind)
+
+
+def reference_settings(kind: str) -> Any | None:
+    """The class of the reference's settings; None: the kind has none.
+
+    Raises:
+        Mistake: it cannot be imported.
+    """
+    reference = reference_of(kind)
+    return imported(reference.settings, f"the reference of {kind}") if reference else None
 
 
 def judge_of(kind: str) -> Any | None:

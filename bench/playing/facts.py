@@ -5,9 +5,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from fogbench.bench.playing.loop import Record, episode_world, start_and_roll
-from fogbench.planners import reference_of
+from fogbench.planners import reference_settings
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.tables import imported
 from fogbench.worlds.types import Outcome, World
 
 if TYPE_CHECKING:
@@ -35,11 +34,10 @@ def facts(variant: "Variant", episode: int) -> Mapping[str, Any]:
 
 def _reference_length(world: World, variant: "Variant", episode: int) -> float | None:
     """Length that the reference of the kind travels in the same world; None where it does not reach the goal."""
-    reference = reference_of(variant.kind)
-    if reference is None:
+    settings, record = reference_settings(variant.kind), Record()
+    if settings is None:
         return None
-    settings, record = imported(reference.settings, f"the reference of {variant.kind}")(), Record()
-    start_and_roll(world, settings, variant, episode, record, None)
+    start_and_roll(world, settings(), variant, episode, record, None)
     return record.length if record.outcome is Outcome.REACHED else None
 
 

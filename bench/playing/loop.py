@@ -3,8 +3,6 @@
 All that it imports decides, beside the world, the agent and the judge, what an episode is; keys of episodes cover it.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from operator import index
@@ -53,32 +51,27 @@ class Clerk:
 
     def stands(self, state: Any) -> None:
         """The agent decides in a state."""
-        with _blamed("the world, asked what remains to the goal"):
+        try:
             self.record.remaining.append(float(self.world.remaining(state)))
+        except Exception as error:
+            raise _told("the world, asked what remains to the goal", error) from error
 
     def decided(self, observation: Any, action: Any) -> None:
         """An action was carried out."""
         if self.judge is None:
             return
-        with _blamed("the judge"):
+        try:
             self.judge.see(observation)
             judged, wrong, strictly_wrong = self.judge.judge(action)
-            self.record.judged += bool(judged)
-            self.record.wrong_decisions += bool(wrong)
-            self.record.strict_wrong += bool(strictly_wrong)
+        except Exception as error:
+            raise _told("the judge", error) from error
+        self.record.judged += bool(judged)
+        self.record.wrong_decisions += bool(wrong)
+        self.record.strict_wrong += bool(strictly_wrong)
 
 
-@contextmanager
-def _blamed(who: str) -> Iterator[None]:
-    """An error in here is none of the agent's.
-
-    Raises:
-        ClerkError: there was one.
-    """
-    try:
-        yield
-    except Exception as error:
-        raise ClerkError(f"{who} raised {type(error).__name__}: {error}") from error
+def _told(who: str, error: Exception) -> ClerkError:
+    return ClerkError(f"{who} raised {type(error).__name__}: {error}")
 
 
 def roll(world: World, agent: Agent, luck: np.random.Generator, record: Record, clerk: Clerk | None) -> Outcome:

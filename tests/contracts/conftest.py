@@ -76,7 +76,8 @@ ARENAS: dict[str, list[tuple[MapFamily, dict[str, Any]]]] = {
             Blobs(size=14, obstacles=(10, 20), obstacle_size=(1, 3)),
             {"radius": 2, "occlusion": True, "false_readings": 0.1, "collision": "blocked", "slip": 0.1},
         ),
-    ]
+    ],
+    "ring": [(resolve_name("ring_kind.stations:Stations")(size=21, cut=0.7), {"slip": slip}) for slip in (0.0, 0.2)],
 }
 """Where agents are tested, by the kind of world: families, and the fields of the conditions."""
 
@@ -174,10 +175,9 @@ def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
     """Draws worlds of a kind, a few from each arena."""
 
     def draw(kind: str) -> list[World]:
-        if kind == "ring":
-            return _rings()
         assert kind in ARENAS, f"the tables have {kind}; expected worlds for it in {__file__}"
-        fields = [(maps, conditions(steps=40, distance=(5, 30), **fields)) for maps, fields in ARENAS[kind]]
+        make = {"grid": conditions, "ring": _ring_conditions}[kind]
+        fields = [(maps, make(steps=40, distance=(5, 30), **fields)) for maps, fields in ARENAS[kind]]
         return [
             maps.sample(np.random.default_rng(seed), seed, under) for maps, under in fields for seed in range(EPISODES)
         ]
@@ -185,11 +185,10 @@ def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
     return draw
 
 
-def _rings() -> list[World]:
-    """A few rings with cut links, where a step may lead nowhere."""
-    under = resolve_name("ring_kind.conditions:RingConditions")(track={"slip": 0.2}, budget={"steps": 40})
-    family = resolve_name("ring_kind.stations:Stations")(size=11, cut=0.7)
-    return [family.sample(np.random.default_rng(seed), seed, under) for seed in range(2 * EPISODES)]
+def _ring_conditions(steps: int, distance: tuple[int, int], **fields: Any) -> Any:
+    """Conditions of rings of the fields of their track."""
+    made = resolve_name("ring_kind.conditions:RingConditions")
+    return made(track=fields, tasks={"distance": distance}, budget={"steps": steps})
 
 
 @pytest.fixture
