@@ -8,7 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,26 +18,8 @@ import pytest
 from PIL import Image
 
 import fogbench
-from fogbench.worlds.tables import registered
 
-SOURCE = Path(__file__).parent / "plugin" / "ring_kind"
-
-POINTS = """
-[fogbench.kinds]
-ring = ring_kind:RING
-[fogbench.references]
-ring = ring_kind:REFERENCE
-[fogbench.judges]
-ring = ring_kind.judge:RingJudge
-[fogbench.families]
-stations = ring_kind.stations:Stations
-[fogbench.planners]
-walker = ring_kind.walker:Walker
-[fogbench.learned]
-ring_net = ring_kind.policy:RingPolicy
-[fogbench.encodings]
-ring = ring_kind.encoding:RingEncoding
-"""
+PLUGINS = Path(__file__).parent / "plugin"
 
 RECIPE = """\
 name: round
@@ -77,25 +59,9 @@ episodes: 6
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder where the package is installed, with its entry points."""
     place = tmp_path_factory.mktemp("site")
-    shutil.copytree(SOURCE, place / "ring_kind", ignore=shutil.ignore_patterns("__pycache__"))
-    info = place / "ring_kind-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: ring-kind\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(POINTS)
+    for name in ("ring_kind", "ring_kind-1.0.dist-info"):
+        shutil.copytree(PLUGINS / name, place / name, ignore=shutil.ignore_patterns("__pycache__"))
     return place
-
-
-@pytest.fixture
-def ring(site: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """The package, imported here."""
-    monkeypatch.syspath_prepend(site)
-    registered.cache_clear()
-    import ring_kind  # noqa: PLC0415  it is on the path only now
-
-    yield ring_kind
-    for name in [name for name in sys.modules if name.partition(".")[0] == "ring_kind"]:
-        monkeypatch.delitem(sys.modules, name)
-    registered.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -298,43 +264,3 @@ def test_a_network_of_another_kind_does_not_learn_there(command: Any) -> None:
     code, text = command("train", "wrong_net.yaml", wrong_net=RECIPE.replace("network: ring_net", "network: vin"))
     assert code == 2
     assert "network: got one that plays grid; expected one that plays worlds of kind ring." in text
-
-
-def test_what_was_never_seen_changes_nothing(ring: Any) -> None:
-    """Two rings that differ only in links that the walker has not looked at get the same actions."""
-    from ring_kind.conditions import RingConditions  # noqa: PLC0415  it is on the path only now
-    from ring_kind.stations import Stations  # noqa: PLC0415
-    from ring_kind.walker import Walker  # noqa: PLC0415
-
-    del ring
-    conditions, changed = RingConditions(budget={"steps": 20}), 0
-    for seed in range(20):
-        world = Stations(size=11, cut=0.7).sample(np.random.default_rng(seed), 0, conditions)
-        places, actions = walk(world, Walker())
-        links = world.links.copy()
-        unseen = set(range(11)) - {place - back for place in places for back in (0, 1)} - {10 if 0 in places else -1}
-        for link in unseen:
-            links[link] = fogbench.FREE + fogbench.BLOCKED - links[link]
-        other = conditions.ring(links, world.start, world.task.goal)
-        if other is None:  # what was changed has closed the ring
-            other = type(world)(links, world.start, world.task, world.slip)
-        changed += len(unseen)
-        assert walk(other, Walker()) == (places, actions)
-    assert changed > 50
-
-
-def walk(world: Any, settings: Any) -> tuple[list[int], list[Any]]:
-    """The stations and the actions of an episode."""
-    agent, state, luck = settings.start(world.task, np.random.default_rng(0)), world.reset(), np.random.default_rng(1)
-    places, actions = [], []
-    for _ in range(world.task.budget.steps):
-        observation = world.sense(state, luck)
-        places.append(observation.place)
-        actions.append(agent.act(observation))
-        if actions[-1] is None:
-            break
-        step = world.step(state, actions[-1], luck)
-        if step.reached:
-            break
-        state = step.state
-    return places, actions

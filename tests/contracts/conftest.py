@@ -1,11 +1,14 @@
 """What every plug-in of the tables is tested with: examples of its settings, and worlds to play in.
 
-A new agent or map family needs a line in `AGENTS` or `FAMILIES` here; then all contracts are tested for it. Agents of
-`tests/plugin/ring_kind`, a kind of world of another package, keep the same ones.
+A new agent or map family needs a line in `AGENTS` or `FAMILIES` here; then all contracts are tested for it. What
+`tests/plugin/ring_kind` adds, a kind of world of another package, keeps the same ones.
 """
 
 import sys
 from collections.abc import Callable, Iterator
+from importlib.metadata import Distribution
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any, NamedTuple
@@ -16,11 +19,7 @@ import torch
 from PIL import Image
 
 from fogbench import learned, planners, worlds
-from fogbench.worlds.maps.families.blobs import Blobs
-from fogbench.worlds.maps.families.bug_trap import BugTrap
-from fogbench.worlds.maps.families.maze import Maze
-from fogbench.worlds.maps.families.rooms import Rooms
-from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.tables import named, registered
 from fogbench.worlds.types import AgentSettings, MapFamily, Observation, World
 
 AGENTS: dict[str, list[dict[str, Any]]] = {
@@ -40,13 +39,9 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
     "cnn_memory": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
     "walker": [{}],
+    "ring_net": [{"checkpoint": "none"}],
 }
-"""Settings of every entry of `fogbench.planners.PLANNERS`, `fogbench.learned.LEARNED` and `FOREIGN`, fast to play."""
-
-FOREIGN = {"walker": "ring_kind.walker:Walker"}
-"""Agents of a kind of world of another package."""
-
-sys.path.append(str(Path(__file__).parents[1] / "plugin"))
+"""Settings of every agent that ships, or that the foreign package adds, fast to play."""
 
 FAMILIES: dict[str, list[dict[str, Any]]] = {
     "blobs": [
@@ -62,24 +57,40 @@ FAMILIES: dict[str, list[dict[str, Any]]] = {
     ],
     "movingai": [{"map": "one.map"}, {"map": "two.map"}, {"map": "one.map", "scen": "two.map.scen"}],
     "occupancy": [{"map": "one.yaml"}, {"map": "two.yaml"}, {"map": "one.yaml", "downsample": 2}],
+    "stations": [{"size": 21}, {"size": 21, "cut": 0.7}],
 }
-"""Settings of every entry of `fogbench.worlds.FAMILIES`, all different; files are those of the fixture `folder`."""
+"""The same of every map family, all different; files are those of the fixture `folder`."""
 
-ARENAS: dict[str, list[tuple[MapFamily, dict[str, Any]]]] = {
+PLUGINS = Path(__file__).parents[1] / "plugin"
+
+FOREIGN = {
+    group: {point.name: point.value for point in points}
+    for group, points in groupby(Distribution.at(PLUGINS / "ring_kind-1.0.dist-info").entry_points, attrgetter("group"))
+}
+"""What the foreign package adds, by the group of entry points."""
+
+ARENAS: dict[str, list[tuple[str, dict[str, Any], dict[str, Any]]]] = {
     "grid": [
-        (Blobs(size=14, obstacles=(10, 20), obstacle_size=(1, 3)), {"radius": 1}),
-        (Rooms(size=15, rooms=(2, 3), doors=(1, 2)), {"radius": 3, "occlusion": True}),
-        (Maze(size=11, loops=0.1), {"radius": 2, "occlusion": True, "slip": 0.2}),
-        (BugTrap(size=14, depth=(4, 7), width=(3, 5)), {"radius": 2}),
-        (Tunnel(length=(6, 9)), {"radius": 2, "collision": "blocked", "slip": 0.2, "slip_to": "sideways"}),
+        ("blobs", {"size": 14, "obstacles": [10, 20], "obstacle_size": [1, 3]}, {"radius": 1}),
+        ("rooms", {"size": 15, "rooms": [2, 3], "doors": [1, 2]}, {"radius": 3, "occlusion": True}),
+        ("maze", {"size": 11, "loops": 0.1}, {"radius": 2, "occlusion": True, "slip": 0.2}),
+        ("bug_trap", {"size": 14, "depth": [4, 7], "width": [3, 5]}, {"radius": 2}),
+        ("tunnel", {"length": [6, 9]}, {"radius": 2, "collision": "blocked", "slip": 0.2, "slip_to": "sideways"}),
         (
-            Blobs(size=14, obstacles=(10, 20), obstacle_size=(1, 3)),
+            "blobs",
+            {"size": 14, "obstacles": [10, 20], "obstacle_size": [1, 3]},
             {"radius": 2, "occlusion": True, "false_readings": 0.1, "collision": "blocked", "slip": 0.1},
         ),
     ],
-    "ring": [(resolve_name("ring_kind.stations:Stations")(size=21, cut=0.7), {"slip": slip}) for slip in (0.0, 0.2)],
+    "ring": [("stations", {"size": 21, "cut": 0.7}, {"slip": slip}) for slip in (0.0, 0.2)],
 }
-"""Where agents are tested, by the kind of world: families, and the fields of the conditions."""
+"""Where agents are tested, by the kind of world: families, their settings, and the fields of the conditions."""
+
+TERMS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "grid": ({"radius": 3}, {"radius": 2, "occlusion": True, "collision": "blocked"}),
+    "ring": ({}, {"slip": 0.2}),
+}
+"""Fields of the conditions that families are tested under, by the kind of world."""
 
 EPISODES = 3
 """Worlds of each arena."""
@@ -126,30 +137,54 @@ def play() -> Callable[..., Iterator[Decision]]:
     return decide
 
 
+POLICIES = {**learned.LEARNED, **FOREIGN["fogbench.learned"]}
+MAPS = {**worlds.FAMILIES, **FOREIGN["fogbench.families"]}
+GRID_AGENTS = {**planners.PLANNERS, **learned.LEARNED}
 EXAMPLES = {**AGENTS, **FAMILIES}
-OURS = {**planners.PLANNERS, **learned.LEARNED}
-AGENT_TABLE = {**OURS, **FOREIGN}
-TABLES = {**AGENT_TABLE, **worlds.FAMILIES}
+TABLES = {**GRID_AGENTS, **FOREIGN["fogbench.planners"], **POLICIES, **MAPS}
+
+SETTINGS = {
+    "agent": {entry: TABLES[entry] for entry in TABLES if entry not in MAPS},
+    "policy": POLICIES,
+    "family": MAPS,
+    "settings": TABLES,
+    "grid_agent": GRID_AGENTS,
+    "grid_planner": planners.PLANNERS,
+    "grid_family": worlds.FAMILIES,
+}
+"""The entries whose examples a test runs for, by the name of its argument; what is about cells takes those of grids."""
+
+NAMES = {
+    "refereed": [*planners.REFERENCES, *FOREIGN["fogbench.references"]],
+    "judged": [*planners.JUDGES, *FOREIGN["fogbench.judges"]],
+    "shown": [*learned.ENCODINGS, *FOREIGN["fogbench.encodings"]],
+    "family_name": [*MAPS],
+}
+"""What a test runs for by name: kinds of world that have a reference, a judge, an encoding; and families."""
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Run a test for all examples of all entries of the table that it asks for."""
-    tables = {
-        "agent": OURS if metafunc.module.__name__.endswith("one_view") else AGENT_TABLE,  # rings have their own test
-        "planner": planners.PLANNERS,
-        "policy": learned.LEARNED,
-        "family": worlds.FAMILIES,
-        "settings": TABLES,
-    }
-    for name, table in tables.items():
-        if name in metafunc.fixturenames:
-            entries = [(entry, number) for entry in table for number in range(len(EXAMPLES.get(entry, [{}])))]
-            metafunc.parametrize(name, entries, indirect=True, ids=[f"{entry}-{number}" for entry, number in entries])
+    """Run a test for all examples of all entries, or for all names, that it asks for."""
+    for name in {*SETTINGS} & {*metafunc.fixturenames}:
+        entries = [(entry, number) for entry in SETTINGS[name] for number in range(len(EXAMPLES.get(entry, [{}])))]
+        metafunc.parametrize(name, entries, indirect=True, ids=[f"{entry}-{number}" for entry, number in entries])
+    for name in {*NAMES} & {*metafunc.fixturenames}:
+        metafunc.parametrize(name, NAMES[name])
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _installed() -> Iterator[None]:
+    """The foreign package is on the path, and found by its entry points."""
+    sys.path.append(str(PLUGINS))
+    registered.cache_clear()
+    yield
+    sys.path.remove(str(PLUGINS))
+    registered.cache_clear()
 
 
 @pytest.fixture
 def examples(folder: Path) -> Callable[[str], list[Any]]:
-    """Makes all examples of an entry, of either table."""
+    """Makes all examples of an entry."""
 
     def make(entry: str) -> list[Any]:
         assert entry in EXAMPLES, f"the tables have {entry}; expected examples of its settings in {__file__}"
@@ -161,34 +196,58 @@ def examples(folder: Path) -> Callable[[str], list[Any]]:
 
 @pytest.fixture
 def settings(request: pytest.FixtureRequest, examples: Callable[[str], list[Any]]) -> Any:
-    """An example of an entry of either table."""
+    """An example of an entry."""
     entry, number = request.param
     return examples(entry)[number]
 
 
-agent = planner = policy = family = settings
-"""The same, of one of the tables."""
+agent = policy = family = grid_agent = grid_planner = grid_family = settings
+"""The same, of some of the entries."""
 
 
 @pytest.fixture
-def arena(conditions: Callable[..., Any]) -> Callable[[str], list[World]]:
-    """Draws worlds of a kind, a few from each arena."""
+def under(conditions: Callable[..., Any]) -> Callable[..., Any]:
+    """Makes conditions of a kind of their fields, those of all blocks in one."""
 
-    def draw(kind: str) -> list[World]:
-        assert kind in ARENAS, f"the tables have {kind}; expected worlds for it in {__file__}"
-        make = {"grid": conditions, "ring": _ring_conditions}[kind]
-        fields = [(maps, make(steps=40, distance=(5, 30), **fields)) for maps, fields in ARENAS[kind]]
+    def make(kind: str, steps: Any = 40, distance: Any = None, **fields: Any) -> Any:
+        if kind == "grid":
+            return conditions(steps=steps, distance=distance, **fields)
+        made = resolve_name(named(worlds.KINDS, "fogbench.kinds", kind).conditions)
+        return made(track=fields, tasks={"distance": distance}, budget={"steps": steps})
+
+    return make
+
+
+@pytest.fixture
+def sampled(under: Callable[..., Any]) -> Callable[[MapFamily], list[World]]:
+    """Draws eight worlds of a family within 40 steps, and eight whose optimum is 4 to 20."""
+
+    def draw(family: MapFamily) -> list[World]:
+        kind = family.kinds[0]
+        plain, other = TERMS[kind]
+        bounds = {"steps": {"per_distance": 3, "plus": 5}, "distance": (4, 20)}
         return [
-            maps.sample(np.random.default_rng(seed), seed, under) for maps, under in fields for seed in range(EPISODES)
+            family.sample(np.random.default_rng([seed, 7]), seed, conditions)
+            for conditions in (under(kind, **plain), under(kind, **bounds, **other))
+            for seed in range(8)
         ]
 
     return draw
 
 
-def _ring_conditions(steps: int, distance: tuple[int, int], **fields: Any) -> Any:
-    """Conditions of rings of the fields of their track."""
-    made = resolve_name("ring_kind.conditions:RingConditions")
-    return made(track=fields, tasks={"distance": distance}, budget={"steps": steps})
+@pytest.fixture
+def arena(under: Callable[..., Any]) -> Callable[[str], list[World]]:
+    """Draws worlds of a kind, a few from each arena."""
+
+    def draw(kind: str) -> list[World]:
+        assert kind in ARENAS, f"the tables have {kind}; expected worlds for it in {__file__}"
+        drawn = []
+        for family, fields, rules in ARENAS[kind]:
+            maps, conditions = resolve_name(TABLES[family])(**fields), under(kind, distance=(5, 30), **rules)
+            drawn += [maps.sample(np.random.default_rng(seed), seed, conditions) for seed in range(EPISODES)]
+        return drawn
+
+    return draw
 
 
 @pytest.fixture
@@ -202,12 +261,16 @@ def meetings(agent: AgentSettings, arena: Callable[[str], list[World]]) -> list[
 
 
 @pytest.fixture
-def encoding(kind: str) -> Any:
+def encoding_of() -> Callable[[str], Any]:
     """The encoding of a kind, as the first learned agent that plays it is shown its worlds."""
-    made = [(resolve_name(target), AGENTS[name][0]) for name, target in learned.LEARNED.items()]
-    shown = [policy.model_validate(fields).encoding() for policy, fields in made if kind in policy.kinds]
-    assert shown, f"no learned agent plays {kind}"
-    return shown[0]
+
+    def find(kind: str) -> Any:
+        made = [(resolve_name(target), AGENTS[name][0]) for name, target in POLICIES.items()]
+        shown = [policy.model_validate(fields).encoding() for policy, fields in made if kind in policy.kinds]
+        assert shown, f"no learned agent plays {kind}"
+        return shown[0]
+
+    return find
 
 
 @pytest.fixture(scope="session")

@@ -1,15 +1,13 @@
-"""The contract of every reference, judge and encoding of the tables: one of each kind of world."""
+"""The contract of every reference, judge and encoding: one of each kind of world."""
 
 from collections.abc import Callable, Iterator
 from copy import deepcopy
-from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
-import pytest
 
 from fogbench.learned import ENCODINGS
-from fogbench.planners import JUDGES, REFERENCES, reference_of
+from fogbench.planners import JUDGES, REFERENCES, judge_of, reference_settings
 from fogbench.planners.judging import Judge, Verdict
 from fogbench.worlds import KINDS
 from fogbench.worlds.types import World
@@ -18,36 +16,40 @@ Play = Callable[..., Iterator[Any]]
 
 Arena = Callable[[str], list[World]]
 
+Find = Callable[[str], Any]
+
+
+def _reference(kind: str) -> Any:
+    made = reference_settings(kind)
+    assert made is not None
+    return made()
+
 
 def test_tables_name_kinds_that_there_are() -> None:
     """Nothing is kept for a kind of world that nobody can ask for."""
     assert {*REFERENCES, *JUDGES, *ENCODINGS} <= {*KINDS}
 
 
-@pytest.mark.parametrize("kind", REFERENCES)
-def test_a_reference_plays_its_kind_without_settings(kind: str, arena: Arena, play: Play) -> None:
+def test_a_reference_plays_its_kind_without_settings(refereed: str, arena: Arena, play: Play) -> None:
     """It is started with its defaults, and decides in every world; its judge never finds it strictly wrong."""
-    reference = reference_of(kind)
-    assert reference is not None
-    settings = resolve_name(reference.settings)()
-    assert kind in settings.kinds
-    for world in arena(kind):
-        judge = resolve_name(JUDGES[kind])(world.task)
+    settings = _reference(refereed)
+    assert refereed in settings.kinds
+    for world in arena(refereed):
+        judge = judge_of(refereed)(world.task)
         for _, observation, action, _, _ in play(world, settings, 0):
             judge.see(observation)
             if action is not None:
                 assert not judge.judge(action).strictly_wrong
 
 
-@pytest.mark.parametrize("kind", JUDGES)
-def test_a_judge_knows_what_it_teaches(kind: str, encoding: Any, arena: Arena, play: Play) -> None:
+def test_a_judge_knows_what_it_teaches(judged: str, encoding_of: Find, arena: Arena, play: Play) -> None:
     """An output is right where it is a target; where there is none, nothing is judged."""
-    made = resolve_name(JUDGES[kind])
-    for world in arena(kind):
-        judge = made(world.task)
+    encoding = encoding_of(judged)
+    for world in arena(judged):
+        judge = judge_of(judged)(world.task)
         assert isinstance(judge, Judge)
         viewpoint = encoding.start(world.task)
-        for _, observation, _, _, _ in play(world, resolve_name(REFERENCES[kind].settings)(), 0):
+        for _, observation, _, _, _ in play(world, _reference(judged), 0):
             judge.see(observation)
             viewpoint.see(observation)
             targets = judge.targets()
@@ -59,27 +61,26 @@ def test_a_judge_knows_what_it_teaches(kind: str, encoding: Any, arena: Arena, p
                 assert verdict.wrong == (verdict.judged and not right)
 
 
-@pytest.mark.parametrize("kind", JUDGES)
-def test_hindsight_chooses_among_what_is_right(kind: str, arena: Arena, play: Play) -> None:
+def test_hindsight_chooses_among_what_is_right(judged: str, arena: Arena, play: Play) -> None:
     """It asks for no action that is wrong by what is known, and for one wherever there is one."""
-    made = resolve_name(JUDGES[kind])
-    for world in arena(kind) if hasattr(made, "hindsight") else ():
+    made = judge_of(judged)
+    for world in arena(judged) if hasattr(made, "hindsight") else ():
         judge, hindsight = made(world.task), made.hindsight(world)
-        for _, observation, _, _, _ in play(world, resolve_name(REFERENCES[kind].settings)(), 0):
+        for _, observation, _, _, _ in play(world, _reference(judged), 0):
             judge.see(observation)
             hindsight.see(observation)
             assert (hindsight.targets() <= judge.targets()).all()
             assert hindsight.targets().any() == judge.targets().any()
 
 
-@pytest.mark.parametrize("kind", ENCODINGS)
-def test_an_encoding_shows_many_as_it_shows_one(kind: str, encoding: Any, arena: Arena, play: Play) -> None:
+def test_an_encoding_shows_many_as_it_shows_one(shown: str, encoding_of: Find, arena: Arena, play: Play) -> None:
     """A batch of viewpoints is encoded as each alone; outputs have names, all different, and one is open."""
+    encoding = encoding_of(shown)
     assert len(set(encoding.outputs)) == len(encoding.outputs)
-    for world in arena(kind):
+    for world in arena(shown):
         viewpoints = [encoding.start(world.task) for _ in range(2)]
         for seed, viewpoint in enumerate(viewpoints):
-            observation = next(play(world, resolve_name(REFERENCES[kind].settings)(), seed)).observation
+            observation = next(play(world, _reference(shown), seed)).observation
             viewpoint.see(observation)
         both = encoding.encode(viewpoints)
         for row, viewpoint in enumerate(viewpoints):

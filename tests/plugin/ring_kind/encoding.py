@@ -26,7 +26,8 @@ class RingInputs(NamedTuple):
 class RingViewpoint:
     """What is kept of an episode: the ring known so far."""
 
-    observation: Observation
+    place: int
+    blocked: bool
 
     def __init__(self, task: Task) -> None:
         """Nothing is seen yet."""
@@ -35,7 +36,7 @@ class RingViewpoint:
 
     def see(self, observation: Observation) -> None:
         """Look."""
-        self.observation = observation
+        self.place, self.blocked = observation.place, observation.blocked
         self.known.update(observation)
 
     def act(self, output: int) -> Way:
@@ -74,7 +75,7 @@ class RingEncoding:
 
 
 def _numbers(viewpoint: RingViewpoint) -> list[float]:
-    size = len(viewpoint.known.links)
-    cut = [float(reading == BLOCKED) for reading in viewpoint.observation.view]
-    ways = ahead(viewpoint.known.links, viewpoint.observation.place, viewpoint.goal)
-    return [*cut, *(min(way, 2 * size) / size for way in ways), float(viewpoint.observation.blocked)]
+    links, place = viewpoint.known.links, viewpoint.place
+    cut = [float(links[link] == BLOCKED) for link in (place, place - 1)]
+    ways = ahead(links, place, viewpoint.goal)
+    return [*cut, *(min(way, 2 * len(links)) / len(links) for way in ways), float(viewpoint.blocked)]
