@@ -202,8 +202,11 @@ def _scenarios(names: list[str] | None) -> list[Path]:
 
 def main() -> None:
     """Run the command line; every mistake of a user ends in lines of text and exit code 2, never in a traceback."""
+    from fogbench.bench.environment import set_environment
     from fogbench.worlds.mistake import Mistake
 
+    for line in set_environment():
+        typer.echo(line, err=True)
     try:
         app()
     except Mistake as mistake:

@@ -34,6 +34,9 @@ HERE = Path(__file__).parent
 DIGEST = 32
 """Bytes of a digest, which a compiled form stands behind."""
 
+OPTIONS = ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INTEL_SVML", "DEBUGINFO_DEFAULT")
+"""Settings of Numba that other code comes from."""
+
 MONTH = 30 * 24 * 3600
 """Seconds without use after which compiled kernels are removed."""
 
@@ -140,7 +143,9 @@ class _Forms:
                 return
 
     def _file(self, folder: Path, signature: object, codegen: Any) -> Path:
-        return folder / f"{self.name}-{digest(self.source, signature, numba_doors.processor(codegen))[:16]}.nbc"
+        options = [getattr(numba.config, option) for option in OPTIONS]
+        words = self.source, signature, numba_doors.processor(codegen), *options
+        return folder / f"{self.name}-{digest(*words)[:16]}.nbc"
 
 
 def _identity(thing: object) -> str:

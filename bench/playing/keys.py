@@ -1,15 +1,18 @@
-"""Keys of episodes: equal keys, equal episodes. A changed setting, seed, map file, source or package changes them.
+"""Keys of episodes: equal keys, equal episodes. A changed setting, seed, file, source or package changes them.
 
 Of the sources only those count that the classes which play lead to by their imports: see
-`fogbench.bench.playing.closure`.
+`fogbench.bench.playing.closure`. Of a file that a setting names the contents count.
 """
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from itertools import chain
+from pathlib import Path
 from typing import Any
 
 from fogbench.bench.playing.closure import closure
 from fogbench.bench.playing.packages import installed
+from fogbench.bench.playing.sources import read_source
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.variant import Entry
 from fogbench.planners import judge_of, reference_of
@@ -31,7 +34,7 @@ def world_key(variant: Variant, versions: Versions | None = None) -> str:
         versions: of the packages; None: those that are installed here.
     """
     words = variant.seed, variant.kind, variant.family.words(), variant.conditions.words()
-    return digest(*words, _used(_of_world(variant), versions))
+    return digest(*words, *_contents(variant.files), _used(_of_world(variant), versions))
 
 
 def agent_key(entry: Entry, versions: Versions | None = None) -> str:
@@ -44,7 +47,17 @@ def agent_key(entry: Entry, versions: Versions | None = None) -> str:
     Raises:
         TypeError: an agent without settings, which was skipped.
     """
-    return digest(_settings(entry).words(), _used(_of_agent(entry), versions))
+    return digest(_settings(entry).words(), *_contents(entry.files), _used(_of_agent(entry), versions))
+
+
+def keys(scenario: Scenario, versions: Versions | None = None) -> dict[tuple[str, str], tuple[str, str]]:
+    """The `agent_key` and `world_key` of each variant and agent that plays, by both names, in their order."""
+    found = dict[tuple[str, str], tuple[str, str]]()
+    for variant in scenario.variants:
+        own = world_key(variant, versions)
+        playing = (entry for entry in variant.agents if not entry.skipped)
+        found |= {(variant.name, entry.label): (agent_key(entry, versions), own) for entry in playing}
+    return found
 
 
 def packages(scenario: Scenario) -> list[str]:
@@ -77,10 +90,21 @@ def _settings(entry: Entry) -> Settings:
     return entry.settings
 
 
-def _used(starts: Iterable[type | str], versions: Versions | None) -> str:
+def _contents(files: Iterable[Path]) -> list[str]:
+    return [read_source(file).digest for file in files]
+
+
+def _used(starts: tuple[type | str, ...], versions: Versions | None) -> str:
     """The digest of all that is used."""
-    starts = list(starts)
+    return _digest(starts, versions) if versions is not None else _used_here(starts)
+
+
+@cache
+def _used_here(starts: tuple[type | str, ...]) -> str:
+    return _digest(starts, installed(closure(*starts).packages))
+
+
+def _digest(starts: tuple[type | str, ...], versions: Versions) -> str:
     contents, names = closure(*starts)
-    found = installed(names) if versions is None else versions
     classes = [start.__qualname__ if isinstance(start, type) else start for start in starts]
-    return digest(*classes, *chain(*sorted(contents)), *(f"{name} {found.get(name, '')}" for name in sorted(names)))
+    return digest(*classes, *chain(*sorted(contents)), *(f"{name} {versions.get(name, '')}" for name in sorted(names)))

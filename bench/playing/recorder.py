@@ -2,14 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import chain
 from pathlib import Path
 from time import monotonic
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from fogbench.bench.playing.episode import SCHEMA, Episode, table
-from fogbench.bench.playing.store import parts, unwritable, write
+from fogbench.bench.playing.store import CURRENT, OUTDATED, new_part, unwritable, write_table
 from fogbench.worlds import files
 from fogbench.worlds.mistake import Mistake
 
@@ -26,8 +24,7 @@ class Recorder:
     def __init__(self, folder: Path, covariates: Sequence[str]) -> None:
         """Go on after the last part that is there."""
         self.covariates = covariates
-        self.episodes = folder / "episodes"
-        self.part = max((int(part.stem) for part in parts(folder) if part.stem.isdecimal()), default=0) + 1
+        self.folder = folder
         self.rows: list[Episode] = []
         self.began = self.written = monotonic()
 
@@ -48,12 +45,8 @@ class Recorder:
     def flush(self) -> None:
         """Write what is held back."""
         if self.rows:
-            sink = pa.BufferOutputStream()
-            pq.write_table(table(self.rows, self.covariates), sink)
-            write(self.episodes / f"{self.part:06}.parquet", sink.getvalue())
-            # In this order Ctrl-C between the two leaves the rows twice, and `read` takes them once.
-            self.part += 1
-            self.rows = []
+            write_table(new_part(self.folder), table(self.rows, self.covariates))
+            self.rows = []  # Ctrl-C before this leaves the rows twice, and `read` takes them once
             self.written = monotonic()
 
 
@@ -74,10 +67,11 @@ def recording(folder: Path, covariates: Sequence[str]) -> Iterator[Recorder]:
     with ExitStack() as held:
         try:
             held.enter_context(files.alone(folder, "run"))
-            (folder / "episodes").mkdir(exist_ok=True)
+            for which in (CURRENT, OUTDATED):
+                (folder / which).mkdir(exist_ok=True)
         except OSError as error:
             raise unwritable(folder, error) from None
-        for leftover in (folder / "episodes").glob(".*.parquet"):
+        for leftover in chain.from_iterable((folder / which).glob(".*.parquet") for which in (CURRENT, OUTDATED)):
             leftover.unlink()
         recorder = Recorder(folder, covariates)
         try:

@@ -6,12 +6,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from fogbench.bench.playing.local import Job, play_here
+from fogbench.bench.playing.keys import keys
+from fogbench.bench.playing.local import Job, RunError, play_here
+from fogbench.bench.playing.outdated import sort_rows
 from fogbench.bench.playing.provenance import noted
 from fogbench.bench.playing.recorder import recording
 from fogbench.bench.playing.store import recorded
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Outcome
+
+CHANGED = (
+    "got other sources, files or packages of {what} than when the run began; expected them to stay as they are until "
+    "it ends. What was played is kept; run the same command again to play the rest."
+)
+"""What is told when something that counts was edited meanwhile."""
 
 Recorded = dict[tuple[str, str], set[int]]
 """The recorded episodes of each (variant, agent)."""
@@ -48,12 +56,14 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
         watch: told the count of each variant and agent before the first episode, then after each of theirs.
 
     Raises:
-        RunError: a world cannot be made, or the project has a bug.
+        RunError: a world cannot be made, what plays was edited meanwhile, or the project has a bug.
         StoreError: the store is broken, or cannot be written.
         Mistake: another run records there.
     """
     covariates = dict.fromkeys(name for variant in scenario.variants for name in variant.conditions.covariates)
     with recording(folder, tuple(covariates)) as recorder:
+        sort_rows(folder, scenario)
+        expected = keys(scenario)
         done = recorded(folder, scenario)
         counts = {pair: len(episodes) for pair, episodes in done.items()}
         totals = _totals(scenario)
@@ -68,8 +78,10 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
                 if row is None:
                     recorder.flush_if_due()
                     continue
-                recorder.append(row)
                 pair, outcome = (row.variant, row.agent), Outcome[row.outcome]
+                if (row.agent_key, row.world_key) != expected[pair]:
+                    raise RunError(f"{row.variant}, episode {row.episode}: {CHANGED.format(what=row.agent)}")
+                recorder.append(row)
                 counts[pair] += 1
                 summary.outcomes[outcome] += 1
                 watch(Progress(*pair, counts[pair], totals[pair], outcome))

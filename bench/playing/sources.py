@@ -1,4 +1,4 @@
-"""What one source file counts by, its contents without comments and docstrings, and the import statements in it."""
+"""What one file counts by: its contents, of a source without comments and docstrings; and its import statements."""
 
 import ast
 import re
@@ -41,6 +41,10 @@ class Source(NamedTuple):
     imports: tuple[Import, ...]
 
 
+_STAMPS: dict[Path, tuple[int, ...]] = {}
+"""Of each file that was read: what tells that it may have been written since."""
+
+
 @cache
 def read_source(path: Path) -> Source:
     """Read a file, once in a process; one that is no Python, or not for this version, counts by its bytes.
@@ -48,6 +52,31 @@ def read_source(path: Path) -> Source:
     Raises:
         OSError: it cannot be read.
     """
+    _STAMPS[path] = _stamp(path)
+    return _read(path)
+
+
+def edited() -> list[Path]:
+    """The files that this process has read, and that count as others now."""
+    return [path for path, stamp in _STAMPS.items() if _stamp(path) != stamp and not _counts_as_before(path)]
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    try:
+        found = path.stat()
+    except OSError:
+        return ()
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def _counts_as_before(path: Path) -> bool:
+    try:
+        return _read(path).digest == read_source(path).digest
+    except OSError:
+        return False
+
+
+def _read(path: Path) -> Source:
     contents = path.read_bytes()
     try:
         if path.suffix not in (".py", ".pyi"):

@@ -1,11 +1,12 @@
-"""The store of a scenario: `run.json` and `episodes/*.parquet` in one folder.
+"""The store of a scenario: `run.json`, `episodes/*.parquet` and `outdated/*.parquet` in one folder.
 
-`pandas.read_parquet("results/grid/episodes")` reads it anywhere. Here only the rows count whose keys are those of the
-scenario as it is now, under the versions of packages that one asks for: what was played under other settings stays on
-the disk and enters nothing.
+`pandas.read_parquet("results/grid/episodes")` reads it anywhere. Only the rows count whose keys are those of the
+scenario as it is now, under the versions of packages that one asks for. A run moves all others to `outdated/`, which
+enters nothing, and takes back those whose keys hold again: see `fogbench.bench.playing.outdated`.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 import pandas as pd
@@ -13,7 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from fogbench.bench.playing.episode import LATER, SCHEMA
-from fogbench.bench.playing.keys import Versions, agent_key, world_key
+from fogbench.bench.playing.keys import Versions, keys
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds import files
 from fogbench.worlds.mistake import Mistake
@@ -22,6 +23,9 @@ WHO = ["variant", "agent", "episode"]
 """The columns that tell one row of a scenario from another."""
 
 KEYS = ["variant", "agent", "agent_key", "world_key"]
+
+CURRENT, OUTDATED = "episodes", "outdated"
+"""The folders of rows that count, and of those that do not any more."""
 
 pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own pool keeps what is freed
 
@@ -51,28 +55,24 @@ def read(folder: Path, scenario: Scenario, columns: Sequence[str], versions: Ver
     Raises:
         StoreError: a file is broken.
     """
-    return _read(folder, _current(scenario, versions), columns)
+    return _read(parts(folder), current(scenario, versions), columns)
 
 
-def _read(folder: Path, current: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
+def _read(files: Sequence[Path], wanted: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     kept = list(dict.fromkeys([*WHO, *columns]))
+    tables = (load(part, list(dict.fromkeys([*kept, *KEYS]))) for part in files)
     rows: pd.DataFrame = pd.concat(
-        [_rows(table, current, kept) for table in (SCHEMA.empty_table(), *_load_all(folder, kept))], ignore_index=True
+        [_rows(table, wanted, kept) for table in chain([SCHEMA.empty_table()], tables)], ignore_index=True
     )
     order = rows[[*WHO, "place"]].drop_duplicates(WHO).sort_values(["place", "episode"]).index
     return rows.loc[order, list(columns)].reset_index(drop=True)  # long rows are copied only once
 
 
-def _rows(table: pa.Table, current: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Those rows of a part that agree with `current` on the columns of both, without those that said so."""
-    frame = table.to_pandas(types_mapper=LISTS.get).merge(current)
-    wanted: pd.DataFrame = frame.loc[frame["episode"] < frame["wanted"], [*columns, "place"]]
-    return wanted
-
-
-def _load_all(folder: Path, columns: list[str]) -> Iterator[pa.Table]:
-    for part in parts(folder):
-        yield _load(part, list(dict.fromkeys([*columns, *KEYS])))
+def _rows(table: pa.Table, wanted: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """Those rows of a part that agree with `wanted` on the columns of both, without those that said so."""
+    frame = table.to_pandas(types_mapper=LISTS.get).merge(wanted)
+    found: pd.DataFrame = frame.loc[frame["episode"] < frame["wanted"], [*columns, "place"]]
+    return found
 
 
 def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]]:
@@ -90,10 +90,11 @@ def stale(folder: Path, scenario: Scenario, versions: Versions | None = None) ->
     Raises:
         StoreError: a file is broken.
     """
-    keys = _current(scenario, versions)
-    current = _episodes(_read(folder, keys, WHO))
-    ever = _episodes(_read(folder, keys.drop(columns=["agent_key", "world_key"]), WHO))
-    counts = {pair: len(episodes - current.get(pair, set())) for pair, episodes in ever.items()}
+    wanted = current(scenario, versions)
+    valid = _episodes(_read(parts(folder), wanted, WHO))
+    files = [*parts(folder), *parts(folder, OUTDATED)]
+    ever = _episodes(_read(files, wanted.drop(columns=["agent_key", "world_key"]), WHO))
+    counts = {pair: len(episodes - valid.get(pair, set())) for pair, episodes in ever.items()}
     return {pair: count for pair, count in counts.items() if count}
 
 
@@ -101,23 +102,24 @@ def _episodes(rows: pd.DataFrame) -> dict[tuple[str, str], set[int]]:
     return {(str(v), str(a)): set(group) for (v, a), group in rows.groupby(WHO[:2], sort=False)["episode"]}
 
 
-def _current(scenario: Scenario, versions: Versions | None) -> pd.DataFrame:
+def current(scenario: Scenario, versions: Versions | None = None) -> pd.DataFrame:
     """The keys of each variant and agent that runs, its place in the scenario, and how many episodes are wanted."""
-    rows = [
-        (variant.name, entry.label, agent_key(entry, versions), world_key(variant, versions), variant.episodes)
-        for variant in scenario.variants
-        for entry in variant.agents
-        if not entry.skipped
-    ]
+    wanted = {variant.name: variant.episodes for variant in scenario.variants}
+    rows = [(*pair, *both, wanted[pair[0]]) for pair, both in keys(scenario, versions).items()]
     return pd.DataFrame(rows, columns=[*KEYS, "wanted"]).rename_axis("place").reset_index()
 
 
-def parts(folder: Path) -> list[Path]:
+def parts(folder: Path, which: str = CURRENT) -> list[Path]:
     """The files of a store, oldest first."""
-    return sorted((folder / "episodes").glob("[!.]*.parquet"))
+    return sorted((folder / which).glob("[!.]*.parquet"))
 
 
-def _load(part: Path, columns: list[str]) -> pa.Table:
+def load(part: Path, columns: list[str]) -> pa.Table:
+    """Some columns of a file of a store.
+
+    Raises:
+        StoreError: it is broken.
+    """
     try:
         with pq.ParquetFile(part) as file:
             there = file.schema_arrow
@@ -131,6 +133,23 @@ def _load(part: Path, columns: list[str]) -> pa.Table:
     except (pa.ArrowException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise StoreError(f"{part}: got a broken file ({reason}); expected a Parquet file of episodes.") from None
+
+
+def new_part(folder: Path, which: str = CURRENT) -> Path:
+    """Where the next file of a store goes."""
+    last = max((int(part.stem) for part in parts(folder, which) if part.stem.isdecimal()), default=0)
+    return folder / which / f"{last + 1:06}.parquet"
+
+
+def write_table(path: Path, rows: pa.Table) -> None:
+    """Write a file of rows, whole or not at all.
+
+    Raises:
+        StoreError: it cannot be written.
+    """
+    sink = pa.BufferOutputStream()
+    pq.write_table(rows, sink)
+    write(path, sink.getvalue())
 
 
 def write(path: Path, content: bytes | pa.Buffer) -> None:

@@ -10,9 +10,14 @@ from threadpoolctl import threadpool_limits
 
 from fogbench.bench.playing import play as playing
 from fogbench.bench.playing.episode import Episode
+from fogbench.bench.playing.keys import keys
+from fogbench.bench.playing.loop import ClerkError
+from fogbench.bench.playing.sources import edited
 from fogbench.bench.reading.scenario import Scenario, Variant, read_scenario
 from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.types import Outcome
+
+EDITED = "{file} was edited while it was played; what was played before is kept, run the same command again"
 
 _TOLD: ContextVar[tuple[str, Path, int]] = ContextVar("_TOLD")
 """What `begin` was told."""
@@ -35,8 +40,15 @@ def begin(text: str, path: Path, workers: int) -> None:
 
 
 def play(variant: str, agent: str, episode: int) -> Episode:
-    """Play an episode of an agent, both by name; see `fogbench.bench.playing.play.play`."""
-    return playing.play(*_find(variant, agent), episode, _TOLD.get()[2])
+    """Play an episode of an agent, both by name; see `fogbench.bench.playing.play.play`.
+
+    Raises:
+        ClerkError: a file that counts in its keys was edited since this process read it.
+    """
+    row = playing.play(*_find(variant, agent), episode, _TOLD.get()[2])
+    if found := edited():
+        raise ClerkError(EDITED.format(file=found[0]))
+    return row
 
 
 def lose(variant: str, agent: str, episode: int, outcome: Outcome, detail: str) -> Episode:
@@ -53,4 +65,6 @@ def _find(variant_name: str, label: str) -> tuple[Scenario, Variant, Entry]:
 
 @cache
 def _scenario(text: str, path: Path) -> Scenario:
-    return read_scenario(text, path)
+    scenario = read_scenario(text, path)
+    keys(scenario)  # of the sources as they were loaded just now
+    return scenario

@@ -8,6 +8,7 @@ from typing import Any
 
 from fogbench.bench.reading.document import parse
 from fogbench.bench.reading.finding import blocks_of
+from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.overlays import pages, settle, unknown_variants
 from fogbench.bench.reading.page import VARIED
 from fogbench.bench.reading.positions import Fault
@@ -31,6 +32,8 @@ class Variant:
     """Label of the agent that the others are compared with in pairs."""
     episodes: int
     seed: int
+    files: tuple[Path, ...] = ()
+    """That the settings of its map family name."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,4 +115,5 @@ def _variant(name: str, row: VariantReading) -> Variant:
     assert row.page is not None
     assert row.family is not None
     page, reference = row.page, row.page.reference or row.agents[0].label
-    return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, page.episodes, page.seed)
+    files = named_files(row.family, row.folder)
+    return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, page.episodes, page.seed, files)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 
+from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.page import Page
 from fogbench.bench.reading.positions import Value
 from fogbench.bench.reading.tables import AGENT
@@ -23,6 +24,8 @@ class Entry:
     settings: AgentSettings | None
     skipped: str
     """Why it does not run here; empty if it does."""
+    files: tuple[Path, ...] = ()
+    """That its settings name."""
 
 
 class VariantReading(Reading[Page]):
@@ -56,7 +59,7 @@ class VariantReading(Reading[Page]):
         settings = cast(AgentSettings | None, self.block(found, block))
         kinds = cast(AgentSettings, found).kinds
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
-        return Entry(label, place, settings, skipped) if settings else None
+        return Entry(label, place, settings, skipped, named_files(settings, self.folder)) if settings else None
 
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""

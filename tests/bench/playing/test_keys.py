@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fogbench.bench.playing import closure, sources
+from fogbench.bench.playing import closure, keys, sources
 from fogbench.bench.playing.keys import agent_key, packages, world_key
 from fogbench.bench.playing.packages import installed
 from fogbench.bench.reading.scenario import Variant, read_scenario
@@ -111,6 +111,18 @@ def test_a_plug_in_counts_by_its_source_and_not_by_its_path(tmp_path: Path) -> N
     assert found[0] == found[1] != found[2]
 
 
+def test_a_file_that_a_setting_names_counts_by_its_contents(tmp_path: Path) -> None:
+    """Other weights under the same name are another agent; the same ones elsewhere are not."""
+    found = []
+    for name, weights in (("a", b"1"), ("b", b"1"), ("c", b"2")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "gru.pt").write_bytes(weights)
+        (tmp_path / name / "mine.py").write_text(PLUGIN.replace("depth: int = 3", 'weights: str = "gru.pt"'))
+        (agent,) = variant("[astar]", "[./mine.py:Mine]", tmp_path / name / "keys.yaml").agents
+        found.append(agent_key(agent))
+    assert found[0] == found[1] != found[2]
+
+
 def test_a_module_that_a_plug_in_imports_is_in_its_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a function too: a changed line of it is another agent, a comment is not."""
     monkeypatch.syspath_prepend(tmp_path)
@@ -171,7 +183,7 @@ def test_what_settings_say_that_they_use_is_in_the_key(tmp_path: Path, monkeypat
 
 def forget() -> None:
     """Have all files looked for and read again."""
-    for kept in (sources.read_source, closure._find, closure._closure):
+    for kept in (sources.read_source, closure._find, closure._closure, keys._used_here):
         kept.cache_clear()
 
 

@@ -27,6 +27,7 @@ KEYS = """
 import json, sys
 from pathlib import Path
 from fogbench.bench.playing import closure, sources
+from fogbench.bench.playing import keys as used
 from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.reading.scenario import read_scenario
 
@@ -36,7 +37,7 @@ agents = {entry.label: entry for entry in variants["blobs"].agents}
 
 
 def keys():
-    for kept in (sources.read_source, closure._find, closure._closure):
+    for kept in (sources.read_source, closure._find, closure._closure, used._used_here):
         kept.cache_clear()
     worlds = {name: world_key(variant) for name, variant in variants.items()}
     return worlds | {name: agent_key(entry) for name, entry in agents.items()}

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from fogbench.bench.playing import closure, sources
+from fogbench.bench.playing import closure, keys, sources
 from fogbench.bench.playing.episode import SCHEMA, TIMINGS
 from fogbench.bench.playing.local import RunError
 from fogbench.bench.playing.runner import Progress, run
@@ -34,6 +34,12 @@ def facts(scenario: Scenario, folder: Path) -> pd.DataFrame:
     """The recorded facts in one order, whatever the order of agents; lists as tuples, so that frames compare."""
     rows = read(folder, scenario, FACTS).sort_values(["variant", "agent", "episode"], ignore_index=True)
     return rows.assign(actions=rows["actions"].map(tuple))
+
+
+def forget() -> None:
+    """Have sources read again, which a process does once."""
+    for kept in (sources.read_source, closure._closure, keys._used_here):
+        kept.cache_clear()
 
 
 def bad(how: str) -> dict[str, Any]:
@@ -114,8 +120,7 @@ def test_only_what_changed_runs_again(make: Any, tmp_path: Path) -> None:
     assert played(eager, store) == {("short", "astar"): 4, ("long", "astar"): 4}
     with (tmp_path / "bad.py").open("a") as file:
         file.write("\nNEW = True\n")
-    for kept in (sources.read_source, closure._closure):
-        kept.cache_clear()  # a process reads a source once
+    forget()
     assert played(make(agents=plain), store) == {("short", "none"): 4, ("long", "none"): 4}
     assert len(facts(make(agents=plain), store)) == 2 * 3 * 4
     wider = make(agents=plain, variants={"short": {"budget": {"steps": 6}}, "long": {"budget": {"steps": 31}}})
@@ -181,3 +186,46 @@ def test_workers_have_one_thread_each(make: Any, tmp_path: Path, monkeypatch: py
     rows = play(make(agents=agents, reference="threads", episodes=1), tmp_path / "store", 1)
     assert set(rows["search_nodes"]) == set(rows["parameter_bytes"]) == {1}
     assert dict(os.environ) == before
+
+
+EDITED = """
+from pathlib import Path
+
+from fogbench.planners.astar import AStar, AStarAgent
+
+VERSION = 1
+
+
+class Changing(AStar):
+    def start(self, task, rng):
+        here = Path(__file__)
+        log = here.with_name("starts")
+        log.write_text(log.read_text() + "x" if log.exists() else "x")
+        if len(log.read_text()) == 4 and VERSION == 1:  # the second episode, after the practice and the first
+            here.write_text(here.read_text().replace("VERSION = 1\\n", "VERSION = 2\\n"))
+        return super().start(task, rng)
+"""
+
+
+def test_an_edit_while_it_plays_stops_the_run(make: Any, tmp_path: Path) -> None:
+    """In a line; the old rows keep the old key, and the next run plays all anew with the new one."""
+    plugin = tmp_path / "changing.py"
+    plugin.write_text(EDITED)
+    changes = {
+        "agents": ["./changing.py:Changing"],
+        "reference": "Changing",
+        "variants": {"long": {"budget": {"steps": 30}}},
+    }
+    text = make(**changes)
+    with pytest.raises(RunError, match=r"changing\.py was edited while it was played") as caught:
+        run(text, tmp_path / "store", 1, silent)
+    assert "\n" not in str(caught.value)
+    before = pd.read_parquet(tmp_path / "store" / "episodes")
+    assert 0 < len(before) < 4
+    assert plugin.read_text().count("VERSION = 2")
+    forget()
+    again = make(**changes)
+    assert run(again, tmp_path / "store", 1, silent).kept == 0
+    after = pd.read_parquet(tmp_path / "store" / "episodes")
+    assert len(after) == 4
+    assert not {*before["agent_key"]} & {*after["agent_key"]}

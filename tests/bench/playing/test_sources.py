@@ -1,11 +1,12 @@
 """What a source file counts by, and what it imports."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from fogbench.bench.playing.sources import Import, read_source
+from fogbench.bench.playing.sources import Import, edited, read_source
 
 Digest = Callable[..., str]
 
@@ -135,3 +136,20 @@ def test_a_file_of_a_careless_author_is_read_in_silence(tmp_path: Path) -> None:
     """What Python warns of in a source is told to whoever runs it."""
     (tmp_path / "a.py").write_text("x = '\\d'\nassert (x, 'always')\n")
     assert read_source(tmp_path / "a.py").imports == ()
+
+
+def test_an_edit_is_found(tmp_path: Path) -> None:
+    """Of a file that was read: other code, other bytes, or no file any more; not a touch, nor a comment."""
+    code, data, kept = (tmp_path / name for name in ("code.py", "data.bin", "kept.py"))
+    for file in (code, data, kept):
+        file.write_text("1\n")
+        read_source(file)
+    mine = {code, data, kept}
+    assert not mine & {*edited()}
+    kept.write_text("1  # more\n")
+    os.utime(data, (0, 0))
+    assert not mine & {*edited()}
+    code.write_text("2\n")
+    assert mine & {*edited()} == {code}
+    data.unlink()
+    assert mine & {*edited()} == {code, data}
