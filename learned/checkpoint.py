@@ -144,7 +144,7 @@ def read_weights(place: Path, digest: str, forms: Mapping[str, str]) -> dict[str
         raise Mistake(f"a checkpoint that is whole ({place.name} is not the file that its card was written for)")
     try:
         weights: dict[str, Array] = load(contents)
-    except (SafetensorError, KeyError) as error:
+    except (SafetensorError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise Mistake(f"a file of weights ({place.name}: {error})") from None
     found = {name: form(array) for name, array in weights.items()}
     for name in sorted(forms.keys() | found.keys()):

@@ -3,7 +3,9 @@
 Importing this imports no torch.
 """
 
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from fogbench.learned.dnc.heads import Heads, controller_shapes
 from fogbench.learned.dnc.heads import shapes as dnc_shapes
@@ -11,6 +13,9 @@ from fogbench.learned.encoding.grid_sizes import COMPASS, OUTPUTS, SEEN
 from fogbench.learned.grid_policy import GridPolicy
 from fogbench.learned.policy import Size
 from fogbench.learned.shapes import Shapes, linear, parts
+
+HeadCount = Annotated[int, Field(ge=1, le=64)]
+"""Of one sort; each write head has links from every row to every other."""
 
 
 class Remembering(GridPolicy):
@@ -26,9 +31,9 @@ class Remembering(GridPolicy):
     """Rows of a DNC's memory; they may differ from the training's."""
     word: Size = 8
     """Numbers in a row."""
-    reads: Size = 4
+    reads: HeadCount = 4
     """Read heads of a DNC."""
-    writes: Size = 1
+    writes: HeadCount = 1
     """Write heads of a DNC."""
     links: bool = True
     """Whether a DNC keeps temporal links."""

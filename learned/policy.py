@@ -25,7 +25,7 @@ from fogbench.learned.checkpoint import NONE
 from fogbench.learned.encoding.encoding import Encoding
 from fogbench.learned.shapes import Shapes
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.settings import Settings, whole
+from fogbench.worlds.settings import Seed, Settings, whole
 from fogbench.worlds.tables import named, registered
 from fogbench.worlds.types import Agent, Task
 
@@ -38,6 +38,9 @@ ENCODED = "fogbench.encodings"
 Size = Annotated[int, Field(ge=1, le=1024)]
 """Of a part of a network."""
 
+LARGEST = 2**30
+"""Bytes of all weights of a network of the project at most."""
+
 
 class Policy(Settings):
     """A network as an agent."""
@@ -49,7 +52,7 @@ class Policy(Settings):
 
     checkpoint: Annotated[str, Field(examples=[NONE, "macn-grid", "./mine.safetensors"])]
     """The name of a shipped checkpoint, a file that ends in `.safetensors`, or `none` for fresh weights."""
-    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    seed: Seed = 0
     """Of fresh weights."""
     device: Literal["cpu", "cuda"] = "cpu"
     """Where the network runs."""
@@ -160,6 +163,8 @@ class Policy(Settings):
             raise Mistake(f"no {odd[0]}, which means nothing to such a network")
         self.check((info.context or {}).get("extent"))
         shapes = self.shapes()
+        if shapes and self.parameter_bytes() > LARGEST:
+            raise Mistake(f"weights of at most {LARGEST:,} bytes (these settings make {self.parameter_bytes():,})")
         if shapes is None:
             self._built()
         elif self.checkpoint != NONE:

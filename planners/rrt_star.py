@@ -7,16 +7,17 @@ Words used here
 """
 
 from itertools import chain, pairwise, repeat
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from ompl import base, geometric, util
+from pydantic import Field
 
 from fogbench.planners.astar import glance
 from fogbench.planners.route import Route
 from fogbench.planners.segment import PARTS, clear, walk
 from fogbench.worlds.maps.cells import KnownMap
-from fogbench.worlds.settings import Positive, Settings
+from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
 
 SEEDS = 2**31
@@ -39,7 +40,7 @@ class RrtStar(Settings):
         "RRTstar", "InformedRRTstar", "SORRTstar", "RRT", "RRTConnect", "KPIECE1", "BKPIECE1", "LBKPIECE1"
     ] = "RRTstar"
     """OMPL's name of the planner, with OMPL's parameters; those named RRT* are tuned in `plan`."""
-    iterations: Positive = 2000
+    iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 2000
     """Iterations of a plan, after which the best path so far is followed."""
 
     def start(self, task: Task, rng: np.random.Generator) -> "RrtStarAgent":

@@ -4,8 +4,11 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Discriminator, Field, Tag
 
-from fogbench.worlds.settings import Positive, PositiveRange, Settings
+from fogbench.worlds.settings import Count, Positive, PositiveRange, Settings
 from fogbench.worlds.types import Budget
+
+LONGEST = 1_000_000
+"""Seconds that an episode can be given, 11 days; the clocks of an operating system count milliseconds in 32 bits."""
 
 
 class Conditions(Settings):
@@ -22,8 +25,10 @@ class PerDistance(Settings):
     in the way. The true optimum would tell the agent about the map.
     """
 
-    per_distance: Annotated[float, Field(gt=0)]
-    plus: Annotated[int, Field(ge=0)] = 0
+    per_distance: Annotated[float, Field(gt=0, le=1000)]
+    """Steps for each unit of the straight distance."""
+    plus: Count = 0
+    """Steps added to that."""
 
 
 def _form(steps: Any) -> str:
@@ -40,8 +45,11 @@ class BudgetSettings(Settings):
     """The `budget` block: decisions, the hard limit against hangs [s], and bytes carried between decisions."""
 
     steps: StepBudget
-    hard_seconds: Annotated[float, Field(gt=0)] = 300.0
-    memory_bytes: Positive | None = None
+    """Decisions of an episode, as a number or by the straight distance."""
+    hard_seconds: Annotated[float, Field(gt=0, le=LONGEST)] = 300.0
+    """Seconds after which an episode, the start of its agent included, is ended from outside and counts as HUNG."""
+    memory_bytes: Annotated[int, Field(ge=1, le=10**15)] | None = None
+    """Bytes that an agent may carry from one decision to the next; by default any number."""
 
     def over(self, straight: float) -> Budget:
         """The budget of a task whose goal is `straight` away, in the length unit of its kind."""

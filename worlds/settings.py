@@ -16,26 +16,40 @@ class Settings(BaseModel):
         return f"{type(self).__name__} {self.model_dump_json()}"
 
 
-def _ascending(bounds: tuple[int, int]) -> tuple[int, int]:
+def ascending(bounds: tuple[int, int]) -> tuple[int, int]:
+    """The same two numbers.
+
+    Raises:
+        ValueError: the larger comes first.
+    """
     if bounds[0] > bounds[1]:
         raise ValueError("two numbers, the smaller first")
     return bounds
 
 
-Count = Annotated[int, Field(ge=0)]
-"""A whole number from 0."""
+MOST = 1_000_000_000
+"""No whole number of a file is larger; 32 bits hold it, and twice as much."""
 
-Positive = Annotated[int, Field(ge=1)]
-"""A whole number from 1."""
+SIDE = 4096
+"""Cells in a row of a drawn map at most; a map of 16 million cells takes some hundred megabytes while it is drawn."""
+
+Count = Annotated[int, Field(ge=0, le=MOST)]
+"""A whole number from 0 to a billion."""
+
+Positive = Annotated[int, Field(ge=1, le=MOST)]
+"""A whole number from 1 to a billion."""
+
+Seed = Annotated[int, Field(ge=0, le=2**32 - 1)]
+"""Of all luck; 32 bits."""
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 """A number from 0 to 1."""
 
-Range = Annotated[tuple[Count, Count], AfterValidator(_ascending)]
-"""`[least, most]`, both included, from 0."""
+Range = Annotated[tuple[Count, Count], AfterValidator(ascending)]
+"""`[least, most]`, both included, from 0 to a billion."""
 
-PositiveRange = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
-"""`[least, most]`, both included, from 1."""
+PositiveRange = Annotated[tuple[Positive, Positive], AfterValidator(ascending)]
+"""`[least, most]`, both included, from 1 to a billion."""
 
 
 def whole(path: str | Path, info: ValidationInfo) -> Path:

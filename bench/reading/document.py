@@ -7,16 +7,23 @@ from dataclasses import replace
 
 import yaml
 
-from fogbench.bench.reading.positions import Fault, Spot, Value, join
+from fogbench.bench.reading.positions import SHOWN, Fault, Spot, Value, join, shown
 
 VARIABLE = re.compile(r"\$\{(\w+)\}")
 """`${NAME}`: the environment variable of that name."""
 
-SHOWN = 60
-"""Characters of a value that an error shows at most."""
+PRINTABLE = "text without control characters and lone surrogates"
 
 DEEPEST, MOST = 100, 100_000
 """Levels of a file, and values in it with those that its aliases repeat."""
+
+UNWRITABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")
+"""Characters that no name, path or table can have: control characters, and halves of pairs."""
+
+PLAIN = "null", "bool", "int", "float", "str", "seq", "map", "timestamp", "merge", "value"
+
+TAGS = {f"tag:yaml.org,2002:{name}" for name in PLAIN}
+"""What PyYAML makes of values without a tag, or with a plain one."""
 
 TOO_DEEP, TOO_MANY = f"nested more than {DEEPEST} deep", f"more than {MOST:,} values, aliases counted"
 
@@ -44,6 +51,8 @@ def _read(text: str, faults: list[Fault]) -> Value | None:
         faults.append(_broken(Spot(len(before), len(before[-1]) + 1), f"{error.reason}: {chr(error.character)!r}"))
     except RecursionError:
         faults.append(_broken(Spot(1, 1), TOO_DEEP))
+    except (ValueError, OverflowError) as error:  # a number in an escape or a directive is out of range
+        faults.append(_broken(Spot(1, 1), str(error)))
     return None
 
 
@@ -74,8 +83,10 @@ class _Document:
         if node in above:
             self.faults.append(value.wrong("an alias of something that does not hold the alias"))
             return value
+        if node.tag not in TAGS:
+            self.faults.append(value.wrong("a value without a tag"))
         if isinstance(node, yaml.ScalarNode):
-            return _scalar(node, value)
+            return self._scalar(node, value)
         above = (*above, node)
         if isinstance(node, yaml.MappingNode):
             return replace(value, content=dict(self._items(node, value, above)))
@@ -90,6 +101,8 @@ class _Document:
             spot, key = _spot(key_node.start_mark), self._written(key_node)
             if not isinstance(key_node, yaml.ScalarNode):
                 self.faults.append(Fault(*spot, mapping.path, key, "a key that is text"))
+            elif UNWRITABLE.search(key_node.value):
+                self.faults.append(Fault(*spot, mapping.path, key, PRINTABLE))
             elif key == "<<":
                 self.faults.append(Fault(*spot, mapping.path, "<<", "keys written out; merge keys are not read"))
             elif key_node.value in lines:
@@ -100,18 +113,20 @@ class _Document:
                 yield key_node.value, self.value(node_, join(mapping.path, key_node.value), spot, above)
 
     def _written(self, node: yaml.Node) -> str:
-        text = self.text[node.start_mark.index : node.end_mark.index].strip()
+        start = node.start_mark.index
+        text = self.text[start : min(node.end_mark.index, start + 10 * SHOWN)].strip()
         if "\n" in text and not isinstance(node, yaml.ScalarNode):
             return "a mapping" if isinstance(node, yaml.MappingNode) else "a list"
-        text = " ".join(text.split()) or "nothing"
-        return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+        return shown(text)
 
-
-def _scalar(node: yaml.ScalarNode, value: Value) -> Value:
-    """The text of a node, in which an empty variable is none; only a plain `null`, `~` or nothing at all is None."""
-    if node.style is None and node.tag == "tag:yaml.org,2002:null":
-        return value
-    variables = tuple(VARIABLE.findall(node.value))
-    text = VARIABLE.sub(lambda found: os.environ.get(found[1]) or found[0], node.value)
-    unset = next((name for name in variables if not os.environ.get(name)), "")
-    return replace(value, content=text, variables=variables, unset=unset)
+    def _scalar(self, node: yaml.ScalarNode, value: Value) -> Value:
+        """The text of a node, in which an empty variable is none; a plain `null`, `~` or nothing at all is None."""
+        if node.style is None and node.tag == "tag:yaml.org,2002:null":
+            return value
+        variables = tuple(VARIABLE.findall(node.value))
+        text = VARIABLE.sub(lambda found: os.environ.get(found[1]) or found[0], node.value)
+        unset = next((name for name in variables if not os.environ.get(name)), "")
+        if UNWRITABLE.search(text):
+            self.faults.append(value.wrong(PRINTABLE))
+            text = UNWRITABLE.sub("?", text)
+        return replace(value, content=text, variables=variables, unset=unset)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
+from fogbench.bench.reading.page import NAME, is_name
 from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.worlds.mistake import near, one_of
 
@@ -30,6 +31,8 @@ def pages(
     laid = {}
     for name, overlay in overlays.items():
         read = own[name]
+        if variants and not is_name(name):
+            faults.append(variants.wrong_key(name, NAME))
         unknown = set() if read is None else overlay.fields().keys() - set(known)
         faults.extend(overlay.wrong_key(key, one_of(known), near(key, known)) for key in unknown)
         fitting = page if read is None else _without(page, set(blocks) - set(read))

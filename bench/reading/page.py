@@ -1,16 +1,31 @@
 """The keys of a scenario file: its own, and the blocks that the kind of its worlds reads."""
 
+import re
 from functools import cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, create_model
 
-from fogbench.worlds.settings import Positive, Settings
+from fogbench.worlds.settings import Seed, Settings
+
+LONGEST = 100
+"""Characters of a name at most: names of files are made of it."""
+
+NAME = f"a name of 1 to {LONGEST} characters that can be printed"
+
+DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+"""Names that Windows keeps for itself."""
+
+
+def is_name(text: str) -> bool:
+    """Whether a text is short enough for a name, can be printed, and is not blank."""
+    return 0 < len(text) <= LONGEST and text.isprintable() and not text.isspace()
 
 
 def _file_name(name: str) -> str:
-    if not name or set(name) & set('/\\:*?"<>|') or name.startswith("."):
-        raise ValueError("a name that a folder can have")
+    edges = name.startswith((".", " ")) or name.endswith((".", " "))
+    if not is_name(name) or set(name) & set('/\\:*?"<>|') or edges or DEVICES.fullmatch(name):
+        raise ValueError(f"a name that a folder can have, of at most {LONGEST} characters")
     return name
 
 
@@ -21,6 +36,9 @@ FileName = Annotated[str, AfterValidator(_file_name)]
 def _infinity(number: Any) -> Any:
     return "inf" if number == ".inf" else number  # as YAML writes it
 
+
+EPISODES = 1_000_000
+"""Of one agent in one variant at most."""
 
 Number = Annotated[float, Field(ge=0, allow_inf_nan=True), BeforeValidator(_infinity)]
 """A number from 0; `.inf` is one."""
@@ -67,9 +85,9 @@ class Page(Settings):
     """Names, or `name: settings` where it has any; `label` among the settings renames it in tables."""
     reference: str | None = None
     """Label of the agent that the others are compared with in pairs; by default the first."""
-    episodes: Positive
+    episodes: Annotated[int, Field(ge=1, le=EPISODES)]
     """Episodes for each variant and agent."""
-    seed: int = 0
+    seed: Seed = 0
     """Fixes all luck; another seed, other maps."""
     published: Published | None = None
 

@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 from fogbench.worlds.mistake import meant
 
+SHOWN = 60
+"""Characters of a value or a key that an error shows at most."""
+
 
 class Fault(NamedTuple):
     """One mistake of a file; faults sort by their place."""
@@ -20,6 +23,7 @@ class Fault(NamedTuple):
     path: str
     """What it is about, for example `maps.blobs.size`; empty for the whole file."""
     got: str
+    """As it is written; empty: nothing stands there."""
     expected: str
     near: str = ""
     """The valid name that is most like what was got."""
@@ -27,9 +31,10 @@ class Fault(NamedTuple):
     """The same about the mapping that a variant was merged over; what all variants lack is told there, once."""
 
     def text(self, file: str) -> str:
-        """`file:line:column  path: got X; expected Y. Did you mean Z?`, in one line."""
+        """`file:line:column  path: got X; expected Y. Did you mean Z?`, or `missing; give Y`, in one line."""
         path = f"{self.path}: " if self.path else ""
-        return f"{file}:{self.line}:{self.column}  {path}got {self.got}; expected {self.expected}.{meant(self.near)}"
+        told = f"got {self.got}; expected" if self.got else "missing; give"
+        return f"{file}:{self.line}:{self.column}  {path}{told} {self.expected}.{meant(self.near)}"
 
 
 class Spot(NamedTuple):
@@ -82,18 +87,24 @@ class Value:
 
     def wrong_key(self, key: str, expected: str, near: str = "") -> Fault:
         """One of its keys should be something else; it may stand in the mapping that this one was merged over."""
-        child = self.fields()[key]
-        return Fault(*child.key, child.path.removesuffix(key).removesuffix("."), key, expected, near)
+        child, own = self.fields()[key], shown(key)
+        return Fault(*child.key, child.path.removesuffix(own).removesuffix("."), own, expected, near)
 
     def lacks(self, key: str, expected: str) -> Fault:
         """A key is missing."""
         base = self.base.lacks(key, expected) if self.base else None
-        return Fault(*self.spot, join(self.path, key), "nothing", expected, base=base)
+        return Fault(*self.spot, join(self.path, key), "", expected, base=base)
 
 
 def join(path: str, key: str) -> str:
     """The path of a key of the mapping at `path`."""
-    return f"{path}.{key}" if path else key
+    return f"{path}.{shown(key)}" if path else shown(key)
+
+
+def shown(text: str) -> str:
+    """A value or a key as an error shows it: in one line, and cut."""
+    text = " ".join(text[: 10 * SHOWN].split())
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def merge(base: Value, over: Value) -> Value:

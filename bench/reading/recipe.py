@@ -18,7 +18,7 @@ from fogbench.bench.reading.tables import LEARNER, NETWORK, Table
 from fogbench.bench.reading.worlds import Reading
 from fogbench.learned.training.recipe import Learner, Lesson, Recipe, Validation, Worlds
 from fogbench.worlds.mistake import Mistake, near, one_of
-from fogbench.worlds.settings import Settings
+from fogbench.worlds.settings import Seed, Settings
 from fogbench.worlds.types import MapFamily
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class RecipePage(Settings):
     """Where the network is tried while it learns: name to what differs from the rest; by default the rest itself."""
     lessons: Annotated[list[str], Field(default_factory=list)]
     """Variants on which it learns, by turns; by default it learns on the rest itself."""
-    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0
+    seed: Seed = 0
     """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 
 

@@ -11,10 +11,13 @@ from fogbench.bench.reading.finding import blocks_of
 from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.overlays import pages, settle, unknown_variants
 from fogbench.bench.reading.page import VARIED
-from fogbench.bench.reading.positions import Fault
+from fogbench.bench.reading.positions import Fault, Value
 from fogbench.bench.reading.variant import Entry, VariantReading
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import MapFamily
+
+LARGEST = 1_000_000
+"""Bytes of a page at most; PyYAML takes some ten seconds for as many."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,6 +37,8 @@ class Variant:
     seed: int
     files: tuple[Path, ...] = ()
     """That the settings of its map family name."""
+    place: str = ""
+    """Where its maps are said: `file:line:column  path`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,20 +61,24 @@ class Scenario:
 class ScenarioError(Mistake):
     """A file with mistakes; `lines` has one `file:line:column  path: got X; expected Y.` for each, in order."""
 
-    def __init__(self, lines: list[str]) -> None:
-        """Collect the lines."""
+    def __init__(self, lines: list[str], rest: Scenario | None = None) -> None:
+        """Collect the lines; `rest` has the variants whose worlds can be made all the same."""
         super().__init__("\n".join(lines))
         self.lines = lines
+        self.rest = rest
 
 
 def text_of(path: Path) -> str:
-    """The text of a file.
+    """The text of a file; a byte order mark is no part of it.
 
     Raises:
-        ScenarioError: it cannot be read.
+        ScenarioError: it cannot be read, or is larger than any page.
     """
     try:
-        return path.read_text(encoding="utf-8")
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise ScenarioError([f"{path}: got a file of {size:,} bytes; expected at most {LARGEST:,}."])
+        return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise ScenarioError([f"{path}: got a file that cannot be read ({error}); expected UTF-8 text."]) from None
 
@@ -91,29 +100,37 @@ def read_scenario(text: str, path: Path) -> Scenario:
     whole = pages(page, faults, VARIED, partial(blocks_of, folder=path.parent))
     rows = {name: VariantReading(row, path.parent) for name, row in whole.items()}
     faults += settle([row.faults for row in rows.values()]) + unknown_variants(page, list(rows))
-    if faults:
-        raise wrong(faults, path)
     name, about = (str(value.content) if (value := page.child(key)) else "" for key in ("name", "about"))
     published = next(iter(rows.values())).published
     unset = next((value.unset for value in page.below() if value.unset), "")
-    if unset:
-        return Scenario(path, text, name, about, (), published, f"environment variable {unset} is not set")
     left_out = {name: row.skipped for name, row in rows.items() if row.skipped}
-    variants = tuple(_variant(name, row) for name, row in rows.items() if name not in left_out)
-    skipped = "" if variants else next(iter(left_out.values()))
-    return Scenario(path, text, name, about, variants, published, skipped, left_out)
+    whole_rows = {name: row for name, row in rows.items() if row.page and row.family and row.conditions and not unset}
+    variants = tuple(_variant(name, row, _place(path, whole[name])) for name, row in whole_rows.items())
+    missing = f"environment variable {unset} is not set" if unset else next(iter(left_out.values()), "")
+    skipped = "" if variants else missing
+    scenario = Scenario(path, text, name, about, variants, published, skipped, {} if unset else left_out)
+    if faults:
+        raise wrong(faults, path, scenario)
+    return scenario
 
 
-def wrong(faults: list[Fault], path: Path) -> ScenarioError:
+def wrong(faults: list[Fault], path: Path, rest: Scenario | None = None) -> ScenarioError:
     """All that is wrong with a file, in order and once."""
     lines = [fault.text(str(path)) for fault in sorted(faults, key=lambda fault: (fault.line, fault.column))]
-    return ScenarioError(list(dict.fromkeys(lines)))
+    return ScenarioError(list(dict.fromkeys(lines)), rest)
 
 
-def _variant(name: str, row: VariantReading) -> Variant:
-    """A variant of which everything could be read."""
+def _place(path: Path, page: Value) -> str:
+    """Where the map family of a page stands."""
+    (family,) = page.fields()["maps"].fields().values()
+    return f"{path}:{family.key.line}:{family.key.column}  {family.path}"
+
+
+def _variant(name: str, row: VariantReading, place: str) -> Variant:
+    """A variant whose worlds can be made."""
     assert row.page is not None
     assert row.family is not None
-    page, reference = row.page, row.page.reference or row.agents[0].label
-    files = named_files(row.family, row.folder)
-    return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, page.episodes, page.seed, files)
+    page, labels = row.page, [entry.label for entry in row.agents]
+    reference, files = page.reference or next(iter(labels), ""), named_files(row.family, row.folder)
+    terms = page.episodes, page.seed, files, place
+    return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, *terms)

@@ -128,14 +128,20 @@ def _row(items: list[Schema]) -> str:
 
 
 def _bounds(schema: Schema) -> str:
-    least, most = schema.get("minimum"), schema.get("maximum")
-    if least is not None and most is not None:
-        return f" from {least} to {most}"
+    """Of a number, or of the length of a list."""
+    if "minimum" in schema and "maximum" in schema:
+        return f" from {_written(schema['minimum'])} to {_written(schema['maximum'])}"
     words = {
         "minimum": "of at least",
-        "maximum": "of at most",
         "exclusiveMinimum": "above",
         "exclusiveMaximum": "below",
+        "maximum": "up to" if "exclusiveMinimum" in schema else "of at most",
         "minItems": "of at least",
     }
-    return "".join(f" {word} {schema[key]}" for key, word in words.items() if key in schema)
+    told = [f" {word} {_written(schema[key])}" for key, word in words.items() if key in schema]
+    return " and".join(told)
+
+
+def _written(number: float) -> str:
+    """A number, the digits of a whole one in groups of three."""
+    return f"{int(number) if number == int(number) else number:,}"

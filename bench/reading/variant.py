@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from fogbench.bench.reading.named_files import named_files
-from fogbench.bench.reading.page import Page
+from fogbench.bench.reading.page import NAME, Page, is_name
 from fogbench.bench.reading.positions import Value
 from fogbench.bench.reading.tables import AGENT
 from fogbench.bench.reading.worlds import Reading
@@ -67,6 +67,8 @@ class VariantReading(Reading[Page]):
         label = str(said.content) if said else name.rpartition(":")[2]
         if said and not isinstance(said.content, str):
             self.faults.append(said.wrong("text"))
+        elif not is_name(label):
+            self.faults.append((said or item).wrong(NAME))
         elif label in self.lines:
             expected = f"a label of its own ({label} is taken on line {self.lines[label]})"
             self.faults.append((said or item).wrong(expected))

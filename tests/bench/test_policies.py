@@ -173,7 +173,7 @@ def test_a_checkpoint_that_is_not_there_is_told_with_those_that_are(tmp_path: Pa
     """No file of that name, no name that ships, or none at all: one line each."""
     assert (
         told("vin", tmp_path)
-        == "6:5  agents[1].vin.checkpoint: got nothing; expected text like none, macn-grid, ./mine.safetensors."
+        == "6:5  agents[1].vin.checkpoint: missing; give text like none, macn-grid, ./mine.safetensors."
     )
     assert told("vin: {checkpoint: no.safetensors}", tmp_path) == (
         "6:23  agents[1].vin.checkpoint: got no.safetensors; "

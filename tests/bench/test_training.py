@@ -60,7 +60,7 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     with Image.open(folder / "learning.png") as picture:
         assert min(picture.size) > 100
     again = train("small.yaml")[1]
-    assert "It goes on from batch 4." in again
+    assert "Resumes from batch 4." in again
     assert "few:" not in again
 
 
@@ -92,7 +92,7 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     Path("small.yaml").write_text(RECIPE.replace("batch: 2}}", "batch: two}}"))
     assert train("small.yaml")[::2] == (
         2,
-        "small.yaml:5:43  learning.imitation.batch: got two; expected a whole number from 1 to 10000.\n",
+        "small.yaml:5:43  learning.imitation.batch: got two; expected a whole number from 1 to 10,000.\n",
     )
 
 
@@ -106,7 +106,7 @@ def test_a_seed_out_of_range_is_told(train: Fogbench) -> None:
     assert code == 2
     assert err == (
         f"small.yaml:{len(RECIPE.splitlines()) + 1}:7  seed: got 4294967296; "
-        "expected a whole number from 0 to 4294967295.\n"
+        "expected a whole number from 0 to 4,294,967,295.\n"
     )
 
 

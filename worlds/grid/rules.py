@@ -1,18 +1,19 @@
 """What a grid's sensor shows, and what happens when a move fails."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from fogbench.worlds.maps.sight import hidden
-from fogbench.worlds.settings import Positive, Probability, Settings
+from fogbench.worlds.settings import Probability, Settings
 from fogbench.worlds.types import Array, Cell
 
 
 class SquareView(Settings):
     """A sensor that shows the square of cells around the agent; outside the map everything is blocked."""
 
-    radius: Positive = 3
+    radius: Annotated[int, Field(ge=1, le=1024)] = 3
     """Cells to each side; the view is `2 * radius + 1` wide."""
     occlusion: bool = False
     """Whether blocked cells hide what lies behind them."""

@@ -1,11 +1,12 @@
 """From a map of cells to a world: start and goal are drawn, connected, and inside the bounds."""
 
 from abc import ABC, abstractmethod
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Annotated, ClassVar, NamedTuple, Protocol
 
 import numpy as np
+from pydantic import Field
 
-from fogbench.worlds.settings import Positive, Settings
+from fogbench.worlds.settings import SIDE, Settings
 from fogbench.worlds.types import Array, Cell, MapError, World
 
 MAPS = 1000
@@ -81,7 +82,7 @@ class DrawnMaps(CellMaps, ABC):
 class SquareMaps(DrawnMaps):
     """A family of square maps of one size."""
 
-    size: Positive
+    size: Annotated[int, Field(ge=1, le=SIDE)]
     """Side of the square map [cells]."""
 
     def extent(self) -> Cell:

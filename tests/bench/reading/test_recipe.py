@@ -46,8 +46,12 @@ seed: 2
 """
 
 BROKEN = [
-    ("name: small\n", "", ["1:1  name: got nothing; expected text."]),
-    ("name: small", "name: a/b", ["1:7  name: got a/b; expected a name that a folder can have."]),
+    ("name: small\n", "", ["1:1  name: missing; give text."]),
+    (
+        "name: small",
+        "name: a/b",
+        ["1:7  name: got a/b; expected a name that a folder can have, of at most 100 characters."],
+    ),
     ("macn:", "mcan:", [f"3:11  network: got mcan; expected {NETWORKS}. Did you mean macn?"]),
     ("macn:", "astar:", [f"3:11  network: got astar; expected {NETWORKS}."]),
     ("{macn: {memory: lstm}}", "[macn]", ["3:10  network: got [macn]; expected a mapping or text."]),
@@ -94,25 +98,25 @@ BROKEN = [
             ),
         ],
     ),
-    ("network: {macn: {memory: lstm}}\n", "", ["1:1  network: got nothing; expected a mapping or text."]),
-    ("blobs: {size: 16, ", "blobs: {", ["5:10  maps.blobs.size: got nothing; expected a whole number of at least 2."]),
+    ("network: {macn: {memory: lstm}}\n", "", ["1:1  network: missing; give a mapping or text."]),
+    ("blobs: {size: 16, ", "blobs: {", ["5:10  maps.blobs.size: missing; give a whole number from 2 to 4,096."]),
     (
         "  blobs:",
         "  blob:",
         [
             f"5:3  maps: got blob; expected {FAMILIES}. Did you mean blobs?",
-            "16:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
-            "16:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "16:25  variants.32x32.maps.blobs.obstacles: missing; give two whole numbers from 0 to 1,000,000.",
+            "16:25  variants.32x32.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     (
         "maps:\n",
         "map:\n",
         [
-            "1:1  maps: got nothing; expected a mapping.",
+            "1:1  maps: missing; give a mapping.",
             f"4:1  got map; expected one of {KEYS}. Did you mean maps?",
-            "16:25  variants.32x32.maps.blobs.obstacles: got nothing; expected two whole numbers of at least 0.",
-            "16:25  variants.32x32.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "16:25  variants.32x32.maps.blobs.obstacles: missing; give two whole numbers from 0 to 1,000,000.",
+            "16:25  variants.32x32.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     (
@@ -133,7 +137,10 @@ BROKEN = [
     (
         "[2, 2]",
         "few",
-        ["10:36  learning.imitation.curriculum.easy.obstacles: got few; expected two whole numbers of at least 0."],
+        [
+            "10:36  learning.imitation.curriculum.easy.obstacles: got few; "
+            "expected two whole numbers from 0 to 1,000,000."
+        ],
     ),
     ("{obstacles: [2, 2]}", "3", ["10:24  learning.imitation.curriculum.easy: got 3; expected a mapping."]),
     ("until: 0.3", "until: 3", ["10:52  learning.imitation.curriculum.until: got 3; expected a number from 0 to 1."]),
@@ -155,18 +162,18 @@ BROKEN = [
     (
         "batches: 100",
         "batches: 100\n    batch: 10001",
-        ["13:12  learning.imitation.batch: got 10001; expected a whole number from 1 to 10000."],
+        ["13:12  learning.imitation.batch: got 10001; expected a whole number from 1 to 10,000."],
     ),
     (
         "batches: 100",
         "batches: 0",
-        ["12:14  learning.imitation.batches: got 0; expected a whole number of at least 1."],
+        ["12:14  learning.imitation.batches: got 0; expected a whole number from 1 to 1,000,000,000."],
     ),
     (
         "batches: 100",
         "minutes: 3",
         [
-            "10:5  learning.imitation.batches: got nothing; expected a whole number of at least 1.",
+            "10:5  learning.imitation.batches: missing; give a whole number from 1 to 1,000,000,000.",
             f"12:5  learning.imitation: got minutes; expected {LEARNING}.",
         ],
     ),
@@ -175,25 +182,33 @@ BROKEN = [
         "adamw",
         ["13:16  learning.imitation.optimiser: got adamw; expected one of adam, rmsprop. Did you mean adam?"],
     ),
-    ("rate: [1e-3, 1e-4]", "rate: 1e-3", ["14:11  learning.imitation.rate: got 1e-3; expected two numbers above 0."]),
-    ("rate: [1e-3, 1e-4]", "rate: [0, 1e-4]", ["14:12  learning.imitation.rate[0]: got 0; expected a number above 0."]),
+    (
+        "rate: [1e-3, 1e-4]",
+        "rate: 1e-3",
+        ["14:11  learning.imitation.rate: got 1e-3; expected two numbers above 0 and up to 1,000."],
+    ),
+    (
+        "rate: [1e-3, 1e-4]",
+        "rate: [0, 1e-4]",
+        ["14:12  learning.imitation.rate[0]: got 0; expected a number above 0 and up to 1,000."],
+    ),
     (
         "size: 32",
         "size: many",
-        ["16:32  variants.32x32.maps.blobs.size: got many; expected a whole number of at least 2."],
+        ["16:32  variants.32x32.maps.blobs.size: got many; expected a whole number from 2 to 4,096."],
     ),
     (
         "32x32: {maps",
         "32x32: {agents: [astar], maps",
         ["16:11  variants.32x32: got agents; expected one of maps, kind, sensor, rules, tasks, budget."],
     ),
-    ("radius: 3", "radius: 0", ["6:18  sensor.radius: got 0; expected a whole number of at least 1."]),
+    ("radius: 3", "radius: 0", ["6:18  sensor.radius: got 0; expected a whole number from 1 to 1,024."]),
     (
         "radius: 3",
         "radius: ${FOG_NO}",
         ["6:19  got broken YAML (expected ',' or '}', but got '{'); expected one YAML document."],
     ),
-    ("seed: 2", "seed: -1", ["17:7  seed: got -1; expected a whole number from 0 to 4294967295."]),
+    ("seed: 2", "seed: -1", ["17:7  seed: got -1; expected a whole number from 0 to 4,294,967,295."]),
     ("seed: 2", "lessons: 32x32", ["17:10  lessons: got 32x32; expected a list."]),
     ("seed: 2", "lessons: [{32x32: 1}]", ["17:11  lessons[0]: got {32x32: 1}; expected text."]),
     (
@@ -222,11 +237,11 @@ BROKEN = [
         "  imitatoin:",
         [f"9:3  learning: got imitatoin; expected {LEARNERS}. Did you mean imitation?"],
     ),
-    ("budget: {steps: 40}\n", "", ["1:1  budget: got nothing; expected a mapping."]),
+    ("budget: {steps: 40}\n", "", ["1:1  budget: missing; give a mapping."]),
     (
         "seed: 2",
         "validation: {every: 0}",
-        ["17:21  validation.every: got 0; expected a whole number of at least 1."],
+        ["17:21  validation.every: got 0; expected a whole number from 1 to 1,000,000,000."],
     ),
 ]
 

@@ -42,14 +42,18 @@ published:
 LIST = GOOD[GOOD.index("agents:") : GOOD.index("episodes:")]
 
 BROKEN = [
-    ("name: grid\n", "", ["1:1  name: got nothing; expected text."]),
-    ("name: grid", "name: a/b", ["1:7  name: got a/b; expected a name that a folder can have."]),
-    ("name: grid", "name:", ["1:6  name: got nothing; expected text."]),
+    ("name: grid\n", "", ["1:1  name: missing; give text."]),
+    (
+        "name: grid",
+        "name: a/b",
+        ["1:7  name: got a/b; expected a name that a folder can have, of at most 100 characters."],
+    ),
+    ("name: grid", "name:", ["1:6  name: missing; give text."]),
     (
         "name: grid",
         "nmae: grid",
         [
-            "1:1  name: got nothing; expected text.",
+            "1:1  name: missing; give text.",
             f"1:1  got nmae; expected one of {KEYS}. Did you mean name?",
         ],
     ),
@@ -60,8 +64,8 @@ BROKEN = [
         "  bolbs: {size: 16",
         [
             f"4:3  maps: got bolbs; expected {FAMILIES}. Did you mean blobs?",
-            "11:24  variants.hard.maps.blobs.size: got nothing; expected a whole number of at least 2.",
-            "11:24  variants.hard.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "11:24  variants.hard.maps.blobs.size: missing; give a whole number from 2 to 4,096.",
+            "11:24  variants.hard.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     (
@@ -70,8 +74,8 @@ BROKEN = [
         [
             "3:7  maps: got blobs; expected a mapping.",
             f"4:1  got mpas; expected one of {KEYS}. Did you mean maps?",
-            "12:24  variants.hard.maps.blobs.size: got nothing; expected a whole number of at least 2.",
-            "12:24  variants.hard.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "12:24  variants.hard.maps.blobs.size: missing; give a whole number from 2 to 4,096.",
+            "12:24  variants.hard.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     ("  blobs:", "  rooms: {}\n  blobs:", ["4:3  maps: got a mapping; expected a mapping with one map family."]),
@@ -80,8 +84,8 @@ BROKEN = [
         "  []",
         [
             "4:3  maps: got []; expected a mapping.",
-            "11:24  variants.hard.maps.blobs.size: got nothing; expected a whole number of at least 2.",
-            "11:24  variants.hard.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "11:24  variants.hard.maps.blobs.size: missing; give a whole number from 2 to 4,096.",
+            "11:24  variants.hard.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     (
@@ -89,47 +93,47 @@ BROKEN = [
         "  blobs: 16",
         [
             "4:10  maps.blobs: got 16; expected a mapping.",
-            "11:24  variants.hard.maps.blobs.size: got nothing; expected a whole number of at least 2.",
-            "11:24  variants.hard.maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1.",
+            "11:24  variants.hard.maps.blobs.size: missing; give a whole number from 2 to 4,096.",
+            "11:24  variants.hard.maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000.",
         ],
     ),
     (
         "size: 16, ob",
         "sise: 16, ob",
         [
-            "4:10  maps.blobs.size: got nothing; expected a whole number of at least 2.",
+            "4:10  maps.blobs.size: missing; give a whole number from 2 to 4,096.",
             "4:11  maps.blobs: got sise; expected one of size, obstacles, obstacle_size. Did you mean size?",
         ],
     ),
-    ("size: 16", "size: 1", ["4:17  maps.blobs.size: got 1; expected a whole number of at least 2."]),
-    ("size: 16", "size: 1.5", ["4:17  maps.blobs.size: got 1.5; expected a whole number of at least 2."]),
-    ("size: 16", "size: many", ["4:17  maps.blobs.size: got many; expected a whole number of at least 2."]),
-    ("size: 16", "size:", ["4:16  maps.blobs.size: got nothing; expected a whole number of at least 2."]),
-    ("size: 16", "size: 1e3", ["4:17  maps.blobs.size: got 1e3; expected a whole number of at least 2."]),
-    ("size: 16", "size: {a: 1}", ["4:17  maps.blobs.size: got {a: 1}; expected a whole number of at least 2."]),
+    ("size: 16", "size: 1", ["4:17  maps.blobs.size: got 1; expected a whole number from 2 to 4,096."]),
+    ("size: 16", "size: 1.5", ["4:17  maps.blobs.size: got 1.5; expected a whole number from 2 to 4,096."]),
+    ("size: 16", "size: many", ["4:17  maps.blobs.size: got many; expected a whole number from 2 to 4,096."]),
+    ("size: 16", "size:", ["4:16  maps.blobs.size: missing; give a whole number from 2 to 4,096."]),
+    ("size: 16", "size: 1e3", ["4:17  maps.blobs.size: got 1e3; expected a whole number from 2 to 4,096."]),
+    ("size: 16", "size: {a: 1}", ["4:17  maps.blobs.size: got {a: 1}; expected a whole number from 2 to 4,096."]),
     (
         ", obstacle_size: [1, 3]",
         "",
-        ["4:10  maps.blobs.obstacle_size: got nothing; expected two whole numbers of at least 1."],
+        ["4:10  maps.blobs.obstacle_size: missing; give two whole numbers from 1 to 1,000,000,000."],
     ),
     (
         "obstacles: [0, 12]",
         "obstacles: 12",
-        ["4:32  maps.blobs.obstacles: got 12; expected two whole numbers of at least 0."],
+        ["4:32  maps.blobs.obstacles: got 12; expected two whole numbers from 0 to 1,000,000."],
     ),
     ("[1, 3]", "[3, 1]", ["4:56  maps.blobs.obstacle_size: got [3, 1]; expected two numbers, the smaller first."]),
     (
         "[1, 3]",
         "[1, 2, 3]",
-        ["4:56  maps.blobs.obstacle_size: got [1, 2, 3]; expected two whole numbers of at least 1."],
+        ["4:56  maps.blobs.obstacle_size: got [1, 2, 3]; expected two whole numbers from 1 to 1,000,000,000."],
     ),
-    ("[1, 3]", "[1]", ["4:56  maps.blobs.obstacle_size: got [1]; expected two whole numbers of at least 1."]),
+    ("[1, 3]", "[1]", ["4:56  maps.blobs.obstacle_size: got [1]; expected two whole numbers from 1 to 1,000,000,000."]),
     (
         "[1, 3]",
         "[0, x]",
         [
-            "4:57  maps.blobs.obstacle_size[0]: got 0; expected a whole number of at least 1.",
-            "4:60  maps.blobs.obstacle_size[1]: got x; expected a whole number of at least 1.",
+            "4:57  maps.blobs.obstacle_size[0]: got 0; expected a whole number from 1 to 1,000,000,000.",
+            "4:60  maps.blobs.obstacle_size[1]: got x; expected a whole number from 1 to 1,000,000,000.",
         ],
     ),
     ("occlusion: false", "occlusion: no", ["5:32  sensor.occlusion: got no; expected true or false."]),
@@ -146,28 +150,36 @@ BROKEN = [
     ),
     ("slip: 0", "slip: 2", ["6:33  rules.slip: got 2; expected a number from 0 to 1."]),
     ("slip: 0", "slip: .inf", ["6:33  rules.slip: got .inf; expected a number from 0 to 1."]),
-    ("rules: {collision: fails, slip: 0}", "rules:", ["6:7  rules: got nothing; expected a mapping."]),
+    ("rules: {collision: fails, slip: 0}", "rules:", ["6:7  rules: missing; give a mapping."]),
     ("rules: {collision: fails, slip: 0}", "rules: [fails]", ["6:8  rules: got [fails]; expected a mapping."]),
-    ("budget: {steps: 40}\n", "", ["9:9  variants.easy.budget: got nothing; expected a mapping."]),
-    ("{steps: 40}", "{steps: 0}", ["8:17  budget.steps: got 0; expected a whole number of at least 1 or a mapping."]),
+    ("budget: {steps: 40}\n", "", ["9:9  variants.easy.budget: missing; give a mapping."]),
+    (
+        "{steps: 40}",
+        "{steps: 0}",
+        ["8:17  budget.steps: got 0; expected a whole number from 1 to 1,000,000,000 or a mapping."],
+    ),
     (
         "{steps: 40}",
         "{steps: {plus: 20}}",
-        ["8:17  budget.steps.per_distance: got nothing; expected a number above 0."],
+        ["8:17  budget.steps.per_distance: missing; give a number above 0 and up to 1,000."],
     ),
     (
         "{steps: 40}",
         "{steps: {per_distance: 0, pls: 3}}",
         [
-            "8:32  budget.steps.per_distance: got 0; expected a number above 0.",
+            "8:32  budget.steps.per_distance: got 0; expected a number above 0 and up to 1,000.",
             "8:35  budget.steps: got pls; expected one of per_distance, plus. Did you mean plus?",
         ],
     ),
-    ("{steps: 40}", "{steps: 40, hard_seconds: -1}", ["8:35  budget.hard_seconds: got -1; expected a number above 0."]),
+    (
+        "{steps: 40}",
+        "{steps: 40, hard_seconds: -1}",
+        ["8:35  budget.hard_seconds: got -1; expected a number above 0 and up to 1,000,000."],
+    ),
     (
         "{steps: 40}",
         "{steps: 40, memory_bytes: 1 MB}",
-        ["8:35  budget.memory_bytes: got 1 MB; expected a whole number of at least 1 or nothing."],
+        ["8:35  budget.memory_bytes: got 1 MB; expected a whole number from 1 to 1,000,000,000,000,000 or nothing."],
     ),
     ("  easy: {}", "  easy: 5", ["10:9  variants.easy: got 5; expected a mapping or nothing."]),
     (
@@ -183,7 +195,7 @@ BROKEN = [
     (
         "{steps: 60}",
         "{steps: none}",
-        ["11:64  variants.hard.budget.steps: got none; expected a whole number of at least 1 or a mapping."],
+        ["11:64  variants.hard.budget.steps: got none; expected a whole number from 1 to 1,000,000,000 or a mapping."],
     ),
     (
         "obstacles: [20, 30]",
@@ -229,10 +241,10 @@ BROKEN = [
         ["16:12  reference: got eagr; expected one of astar, memoryless, eager. Did you mean eager?"],
     ),
     ("reference: astar", "reference: [astar]", ["16:12  reference: got [astar]; expected text or nothing."]),
-    ("episodes: 10", "episodes: 0", ["17:11  episodes: got 0; expected a whole number of at least 1."]),
-    ("episodes: 10\n", "", ["1:1  episodes: got nothing; expected a whole number of at least 1."]),
-    ("seed: 0", "seed: soon", ["18:7  seed: got soon; expected a whole number."]),
-    ("  source: A paper\n", "", ["20:3  published.source: got nothing; expected text."]),
+    ("episodes: 10", "episodes: 0", ["17:11  episodes: got 0; expected a whole number from 1 to 1,000,000."]),
+    ("episodes: 10\n", "", ["1:1  episodes: missing; give a whole number from 1 to 1,000,000."]),
+    ("seed: 0", "seed: soon", ["18:7  seed: got soon; expected a whole number from 0 to 4,294,967,295."]),
+    ("  source: A paper\n", "", ["20:3  published.source: missing; give text."]),
     (
         "easy: 96.3",
         "esy: 96.3",
@@ -270,7 +282,7 @@ BROKEN = [
         "seed: &s [*s]",
         [
             "18:7  seed[0]: got &s [*s]; expected an alias of something that does not hold the alias.",
-            "18:7  seed: got &s [*s]; expected a whole number.",
+            "18:7  seed: got &s [*s]; expected a whole number from 0 to 4,294,967,295.",
         ],
     ),
     (
@@ -364,28 +376,26 @@ reference: A*
 episodes: -1
 """
     assert mistakes(text) == [
-        "1:1  name: got nothing; expected text.",
-        "1:15  maps.blobs.size: got nothing; expected a whole number of at least 2.",
+        "1:1  name: missing; give text.",
+        "1:15  maps.blobs.size: missing; give a whole number from 2 to 4,096.",
         "1:16  maps.blobs: got sise; expected one of size, obstacles, obstacle_size. Did you mean size?",
         "1:37  maps.blobs.obstacles: got [9, 1]; expected two numbers, the smaller first.",
-        "2:18  sensor.radius: got 1.5; expected a whole number of at least 1.",
-        "5:28  variants.easy.tasks.distance: got far; expected two whole numbers of at least 1 or nothing.",
+        "2:18  sensor.radius: got 1.5; expected a whole number from 1 to 1,024.",
+        "5:28  variants.easy.tasks.distance: got far; expected two whole numbers from 1 to 1,000,000,000 or nothing.",
         "6:24  variants.hard.rules.slip: got 3; expected a number from 0 to 1.",
         f"7:10  agents[0]: got aster; expected {AGENTS}. Did you mean astar?",
         "7:31  agents[1].memoryless: got x; expected no settings.",
         "8:12  reference: got A*; expected one of aster, memoryless.",
-        "9:11  episodes: got -1; expected a whole number of at least 1.",
+        "9:11  episodes: got -1; expected a whole number from 1 to 1,000,000.",
     ]
 
 
 def test_what_all_variants_lack_is_told_once() -> None:
     """It is a mistake of what they are laid over; what only some lack is a mistake of each of those."""
     spread = GOOD.replace("size: 16, ", "").replace("hard: {maps", "hard: {sensor: {radius: 1}, maps")
-    assert mistakes(spread) == ["4:10  maps.blobs.size: got nothing; expected a whole number of at least 2."]
+    assert mistakes(spread) == ["4:10  maps.blobs.size: missing; give a whole number from 2 to 4,096."]
     partly = spread.replace("easy: {}", "easy: {maps: {blobs: {size: 9}}}")
-    assert mistakes(partly) == [
-        "11:45  variants.hard.maps.blobs.size: got nothing; expected a whole number of at least 2."
-    ]
+    assert mistakes(partly) == ["11:45  variants.hard.maps.blobs.size: missing; give a whole number from 2 to 4,096."]
 
 
 def test_a_mistake_behind_an_alias_is_told_where_it_is_written() -> None:
@@ -402,6 +412,6 @@ def test_an_error_names_the_file_and_is_a_mistake_of_the_user() -> None:
     with pytest.raises(Mistake) as error:
         read_scenario(GOOD.replace("seed: 0", "seed: x").replace("episodes: 10", "episodes: x"), Path("some/file.yaml"))
     assert str(error.value) == (
-        "some/file.yaml:17:11  episodes: got x; expected a whole number of at least 1.\n"
-        "some/file.yaml:18:7  seed: got x; expected a whole number."
+        "some/file.yaml:17:11  episodes: got x; expected a whole number from 1 to 1,000,000.\n"
+        "some/file.yaml:18:7  seed: got x; expected a whole number from 0 to 4,294,967,295."
     )

@@ -49,18 +49,18 @@ class Block(Settings):
     ("field", "words"),
     [
         ("whole", "a whole number"),
-        ("count", "a whole number of at least 0"),
+        ("count", "a whole number from 0 to 1,000,000,000"),
         ("part", "a number from 0 to 1"),
         ("above", "a number above 0"),
-        ("below", "a whole number of at least 2 below 9"),
+        ("below", "a whole number of at least 2 and below 9"),
         ("most", "a whole number of at most 9"),
         ("flag", "true or false"),
         ("text", "text"),
         ("choice", "one of a, b"),
         ("numbers", "one of 1, 3"),
         ("single", "only"),
-        ("bounds", "two whole numbers of at least 0"),
-        ("ends", "two whole numbers of at least 1 or nothing"),
+        ("bounds", "two whole numbers from 0 to 1,000,000,000"),
+        ("ends", "two whole numbers from 1 to 1,000,000,000 or nothing"),
         ("several", "a list"),
         ("some", "a list of at least 2"),
         ("mixed", "a list of 2"),
@@ -81,10 +81,10 @@ def test_words(field: str, words: str) -> None:
 def test_a_shape_is_walked_by_keys_and_numbers() -> None:
     """Through references and alternatives, to nothing where nothing is said."""
     block = shape(Block)
-    assert block.at("bounds").at(1).words() == "a whole number of at least 0"
+    assert block.at("bounds").at(1).words() == "a whole number from 0 to 1,000,000,000"
     assert block.at("several").at(7).words() == "a whole number"
     assert block.at("table").at("any").words() == "a number"
-    assert block.at("either").at("size").words() == "a whole number of at least 1"
+    assert block.at("either").at("size").words() == "a whole number from 1 to 1,000,000,000"
     assert block.at("ends").at(2).words() == block.at("inner").at("sise").words() == ""
 
 

@@ -176,7 +176,9 @@ def test_a_variable_may_stand_for_a_number(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setenv("FOG_SEED", "twelve")
     with pytest.raises(ScenarioError) as error:
         read(SHORT + "seed: ${FOG_SEED}\n")
-    assert error.value.lines == ["good.yaml:6:7  seed: got ${FOG_SEED}; expected a whole number."]
+    assert error.value.lines == [
+        "good.yaml:6:7  seed: got ${FOG_SEED}; expected a whole number from 0 to 4,294,967,295."
+    ]
 
 
 def test_a_variable_that_is_not_set_skips_the_scenario(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,7 +193,7 @@ def test_a_variable_that_is_not_set_skips_the_scenario(monkeypatch: pytest.Monke
     assert read(text).skipped == scenario.skipped
     with pytest.raises(ScenarioError) as error:
         read(text + "seed: soon\n")
-    assert error.value.lines == ["good.yaml:7:7  seed: got soon; expected a whole number."]
+    assert error.value.lines == ["good.yaml:7:7  seed: got soon; expected a whole number from 0 to 4,294,967,295."]
 
 
 def test_every_published_metric_is_one_that_a_report_shows() -> None:

@@ -3,18 +3,21 @@
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
-from fogbench.worlds.settings import PositiveRange, Range
+from fogbench.worlds.settings import SIDE, PositiveRange, ascending
+
+Some = Annotated[int, Field(ge=0, le=1_000_000)]
+"""Rectangles of one map."""
 
 
 class Blobs(SquareMaps):
     """Rectangles of random size at random places, overlapping allowed, cut at the border."""
 
-    size: Annotated[int, Field(ge=2)]
+    size: Annotated[int, Field(ge=2, le=SIDE)]
     """Side of the square map [cells]."""
-    obstacles: Range
+    obstacles: Annotated[tuple[Some, Some], AfterValidator(ascending)]
     """How many rectangles, drawn uniformly."""
     obstacle_size: PositiveRange
     """Both sides of each, drawn uniformly and apart [cells]."""

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
-from fogbench.worlds.settings import Probability
+from fogbench.worlds.settings import SIDE, Probability
 
 
 def _odd(size: int) -> int:
@@ -23,7 +23,7 @@ class Maze(SquareMaps):
     There is no wall around the maze: everything outside a map is blocked.
     """
 
-    size: Annotated[int, Field(ge=3), AfterValidator(_odd)]
+    size: Annotated[int, Field(ge=3, le=SIDE), AfterValidator(_odd)]
     """Side of the square map [cells], odd."""
     loops: Probability = 0.0
     """Probability of a wall between two neighbouring corridor cells, which the tree has left standing, to be opened."""

@@ -2,13 +2,15 @@
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from fogbench.worlds.files import read, sha256
 from fogbench.worlds.maps.files.map_server import Header, occupancy, read_header, read_image
 from fogbench.worlds.maps.layout import CellConditions, CellMaps, Layout, fit
-from fogbench.worlds.settings import MapFile, Positive
+from fogbench.worlds.settings import MapFile
 from fogbench.worlds.types import Array, MapError, World
 
 TRIES = 100
@@ -23,7 +25,7 @@ class Occupancy(CellMaps):
 
     map: MapFile
     """A `.yaml` file; it names the image."""
-    downsample: Positive = 1
+    downsample: Annotated[int, Field(ge=1, le=1000)] = 1
     """Side of the square of image cells that makes one cell of the map, blocked if any of them is."""
 
     def sample(self, rng: np.random.Generator, episode: int, conditions: CellConditions) -> World:

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.maps.split import split
-from fogbench.worlds.settings import PositiveRange, Range
+from fogbench.worlds.settings import SIDE, PositiveRange, Range
 from fogbench.worlds.types import Array
 
 
@@ -17,7 +17,7 @@ class Rooms(SquareMaps):
     No room is less than half as wide as if all were equal.
     """
 
-    size: Annotated[int, Field(ge=2)]
+    size: Annotated[int, Field(ge=2, le=SIDE)]
     """Side of the square map [cells]."""
     rooms: PositiveRange
     """How many rooms there are in a row, and how many in a column, each drawn uniformly."""

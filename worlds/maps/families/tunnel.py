@@ -8,18 +8,21 @@ Words used here
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from fogbench.worlds.maps.layout import CellConditions, DrawnMaps, Layout
 from fogbench.worlds.maps.split import split
-from fogbench.worlds.settings import PositiveRange, Probability, Range
+from fogbench.worlds.settings import SIDE, Probability, Range, ascending
 from fogbench.worlds.types import DELTAS, Array, Cell
 
 MARGIN = 2
 """Free cells around the walls, at least."""
+
+Cells = Annotated[int, Field(ge=1, le=1_000_000)]
+"""Of an axis."""
 
 
 class Tunnel(DrawnMaps):
@@ -30,7 +33,7 @@ class Tunnel(DrawnMaps):
     corridor; where the far end is open there is no such wall, and the goal always counts.
     """
 
-    length: PositiveRange
+    length: Annotated[tuple[Cells, Cells], AfterValidator(ascending)]
     """Cells of the axis, drawn uniformly."""
     width: Literal[1, 3] = 1
     """Inner width [cells]."""
@@ -43,6 +46,8 @@ class Tunnel(DrawnMaps):
 
     @model_validator(mode="after")
     def _long_enough(self) -> "Tunnel":
+        if self.bends[1] and self.length[1] > 2 * SIDE:
+            raise ValueError(f"a length of at most {2 * SIDE:,} where there are bends")
         least = (self.bends[1] + 1) * (self.width + 1)
         if self.length[0] < least:
             raise ValueError(f"a length from {least}, for {self.bends[1]} bends and width {self.width}")
