@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from fogbench.bench.check import refuse_too_many
+from fogbench.bench.check import read_sound, refuse_idle
 from fogbench.bench.playing import store
 from fogbench.bench.playing.keys import Versions
 from fogbench.bench.playing.pool import cpus
@@ -24,6 +24,9 @@ from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake, unknown
 from fogbench.worlds.types import Outcome
 
+EACH = 16
+"""Workers of a CPU at most: each takes some hundred megabytes."""
+
 
 def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, results: Path) -> bool:
     """Run scenarios one after the other, and report on each as it ends.
@@ -32,14 +35,17 @@ def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, re
         Whether an agent crashed or hung, now or in the episodes that were recorded before.
 
     Raises:
-        Mistake: some scenarios could not be run; the others were.
+        ScenarioError: all the mistakes in the files and in the maps that they name; nothing was played.
+        Mistake: the workers are too many, or some scenarios could not be run; the others were.
     """
-    console = Console()
+    console, most = Console(), EACH * cpus()
+    if workers and workers > most:
+        raise Mistake(f"--workers: got {workers}; expected at most {most}, {EACH} for each CPU here.")
 
     def play(scenario: Scenario) -> bool:
         return _run(scenario, workers or cpus(), results, console)
 
-    return any(each(read_all(paths, episodes), console, play))
+    return any(each(read_sound(paths, episodes), console, play))
 
 
 def report_all(paths: Sequence[Path], results: Path) -> None:
@@ -84,9 +90,7 @@ def _against(scenario: Scenario, label: str) -> Scenario:
 
 def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> bool:
     folder = results / scenario.name
-    if all(entry.skipped for variant in scenario.variants for entry in variant.agents):
-        raise Mistake(f"{scenario.path}: got no agent that can play here; `fogbench check {scenario.path}` says why.")
-    refuse_too_many(scenario)
+    refuse_idle(scenario)
     with Bars(scenario.name, console) as bars:
         played = run(scenario, folder, workers, bars.watch)
     say(_counts(played), console)

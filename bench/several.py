@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from fogbench.bench.reading.scenario import Scenario, ScenarioError, read_scenario, text_of
+from fogbench.bench.reading.sorts import other_sort
 from fogbench.worlds.mistake import Mistake
 
 Answer = TypeVar("Answer")
@@ -19,24 +20,33 @@ def read_all(paths: Sequence[Path], episodes: int | None) -> list[Scenario]:
 
     Args:
         paths: of the files.
-        episodes: a cell, in place of what the files say; None: what they say.
+        episodes: per variant and agent, in place of what the files say; None: what they say.
 
     Raises:
         ScenarioError: all the mistakes in all the files, or two files with one name.
     """
-    scenarios, lines = dict[str, Scenario](), list[str]()
+    scenarios, errors = read_each(paths, episodes)
+    if errors:
+        raise ScenarioError([line for error in errors for line in error.lines])
+    return scenarios
+
+
+def read_each(paths: Sequence[Path], episodes: int | None) -> tuple[list[Scenario], list[ScenarioError]]:
+    """The same; mistakes are returned, by the file."""
+    scenarios, errors = dict[str, Scenario](), list[ScenarioError]()
     for path in paths:
         try:
             scenario = read_scenario(text_of(path), path)
         except ScenarioError as error:
-            lines += error.lines
+            sort = other_sort(path)
+            lead = [f"{path}: seems to be {sort}; expected a scenario."] if sort else []
+            errors.append(ScenarioError([*lead, *error.lines], error.rest))
             continue
         twin = scenarios.setdefault(scenario.name, scenario)
         if twin is not scenario:
-            lines.append(f"{path}: got the name {scenario.name}, as in {twin.path}; expected a name of its own.")
-    if lines:
-        raise ScenarioError(lines)
-    return [_with_episodes(scenario, episodes) if episodes else scenario for scenario in scenarios.values()]
+            told = f"got the name {scenario.name}, as in {twin.path}; expected a name of its own"
+            errors.append(ScenarioError([f"{path}: {told}."], scenario))
+    return [_with_episodes(each, episodes) if episodes else each for each in scenarios.values()], errors
 
 
 def _with_episodes(scenario: Scenario, episodes: int) -> Scenario:

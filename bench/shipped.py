@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+import typer
+
 from fogbench import learned
-from fogbench.worlds.mistake import Mistake, meant, near, one_of
+from fogbench.worlds.mistake import Mistake, encodable, meant, near, one_of
 
 RECIPES = Path(learned.__file__).with_name("recipes")
 """Where the recipes are that go by a name alone."""
@@ -18,7 +20,7 @@ def find(names: list[str] | None) -> list[Path]:
     """The scenario files that `names` stand for, each once, under the path it is first named by.
 
     Args:
-        names: files, folders (all `*.yaml` below them), or stems of shipped files; None or empty: all that are shipped.
+        names: files, folders (all scenarios below), or stems of shipped files; None or empty: all that are shipped.
 
     Raises:
         Mistake: a name that stands for nothing; the nearest shipped one is told.
@@ -26,7 +28,7 @@ def find(names: list[str] | None) -> list[Path]:
     found: dict[Path, Path] = {}
     for name in names or [str(folder())]:
         for path in _find_one(name):
-            found.setdefault(path.resolve(), path)
+            found.setdefault(path.resolve(), Path(encodable(str(path))))
     return list(found.values())
 
 
@@ -44,14 +46,30 @@ def find_recipe(name: str) -> Path:
     raise Mistake(f"{name}: got no such file; expected {expected}.{meant(near(name, shipped))}")
 
 
+def _pages(place: Path) -> list[Path]:
+    """The YAML files in a folder and below it; what is hidden, and what lies in hidden folders, is not looked at."""
+    files = (file for file in place.rglob("*") if file.suffix in {".yaml", ".yml"} and file.is_file())
+    return sorted(file for file in files if not any(part.startswith(".") for part in file.relative_to(place).parts))
+
+
+def _is_passed_over(file: Path) -> bool:
+    """Whether a file of a folder is plainly no scenario, which is told."""
+    from fogbench.bench.reading.sorts import other_sort  # noqa: PLC0415  listing what is shipped reads nothing
+
+    sort = other_sort(file)
+    if sort:
+        typer.echo(f"{file} is passed over: it seems to be {sort}.", err=True)
+    return bool(sort)
+
+
 def _find_one(name: str) -> list[Path]:
     path = Path(name)
     if path.is_file():
         return [path]
     if path.is_dir():
-        inside = sorted(path.rglob("*.yaml"))
+        inside = [file for file in _pages(path) if folder() in file.parents or not _is_passed_over(file)]
         if not inside:
-            raise Mistake(f"{name}: got a folder without scenarios; expected *.yaml files in it or below it.")
+            raise Mistake(f"{name}: got a folder without scenarios; expected *.yaml or *.yml files in it or below it.")
         return inside
     shipped = {file.stem: file for file in sorted(folder().rglob("*.yaml"))}
     if name in shipped:

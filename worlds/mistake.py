@@ -17,6 +17,19 @@ class Unavailable(Exception):
     """A package that an agent needs is not installed, so it is skipped; the text says how to get it."""
 
 
+def encodable(name: str) -> str:
+    """The same name.
+
+    Raises:
+        Mistake: UTF-8 has no bytes for it: it came from bytes that are no UTF-8.
+    """
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        raise Mistake(f"{name!a}: got a name that is not UTF-8; expected one that can be printed.") from None
+    return name
+
+
 def near(name: str, names: Iterable[str]) -> str:
     """The name that is most like the given one; empty if none is."""
     return next(iter(get_close_matches(name, names, n=1)), "")
