@@ -5,13 +5,19 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from fogbench.bench.hidden import blaming_hidden, refuse_hidden_libraries
+
+refuse_hidden_libraries()
+with blaming_hidden():
+    import typer
+
+    from fogbench.worlds.mistake import Mistake, encodable
 
 app = typer.Typer(
     name="fogbench",
     help="Plan in the fog: learned and classical planners, one partial view, one scoreboard.\n\n"
     "Start with `fogbench run`: it plays every scenario, prints the tables and leaves them with the plots in results/. "
-    "Stop it whenever you like: the next run goes on where it was.",
+    "Stop it whenever you like; run the same command again to resume.",
     no_args_is_help=True,
     rich_markup_mode="markdown",
     add_completion=False,
@@ -36,17 +42,44 @@ Paths = Annotated[
         show_default=False,
     ),
 ]
-Results = Annotated[Path, typer.Option(help="Where the results of all scenarios are kept.")]
+Results = Annotated[Path, typer.Option(help="Folder of the results of all scenarios.")]
+
+
+def _say_version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            typer.echo(f"fogbench {version('fogbench')}")
+        except PackageNotFoundError:
+            typer.echo("fogbench, from a checkout that is not installed")
+        raise typer.Exit
+
+
+@app.callback()
+def every(
+    *,
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="Say the version.")
+    ] = False,
+) -> None:
+    """Options of the command itself."""
 
 
 @app.command()
 def run(
     scenarios: Paths = None,
     episodes: Annotated[
-        int | None, typer.Option(min=1, help="Episodes a cell, instead of what the files say.", show_default=False)
+        int | None,
+        typer.Option(
+            min=1,
+            max=1_000_000,
+            help="Episodes per variant and agent, instead of what the files say.",
+            show_default=False,
+        ),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Worker processes. Default: the CPUs at hand.", show_default=False)
+        int | None, typer.Option(min=1, help="Worker processes. Default: one for each CPU.", show_default=False)
     ] = None,
     results: Results = Path("results"),
 ) -> None:
@@ -59,25 +92,39 @@ def run(
     try:
         crashed = run_all(_scenarios(scenarios), episodes, workers, results)
     except KeyboardInterrupt:
-        typer.echo("Stopped. What was played is recorded; the same command goes on from there.", err=True)
+        typer.echo("Stopped. What was played is recorded; run the same command again to resume.", err=True)
         raise typer.Exit(STOPPED) from None
     raise typer.Exit(CRASHED if crashed else DONE)
 
 
 @app.command()
 def check(scenarios: Paths = None) -> None:
-    """Read scenario files, report every mistake with its place, and say what a run would play."""
+    """Read scenario files and their maps, report every mistake with its place, and say what a run would play."""
     from fogbench.bench.check import check_all
 
     check_all(_scenarios(scenarios))
 
 
 @app.command("list")
-def list_() -> None:
-    """List the scenarios, map families and agents that are at hand, with a sentence on each."""
-    from fogbench.bench.listing import show
+def list_(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help="Show the settings of a map family, an agent, a way to learn, a block (`sensor`, `rules`, `tasks`, "
+            "`budget`), a kind of file (`scenario`, `recipe`), or a class (`./mine.py:Mine`).",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """List the scenarios, map families, agents and ways to learn; with NAME, the settings that it has."""
+    if name is None:
+        from fogbench.bench.listing import show
 
-    show()
+        show()
+    else:
+        from fogbench.bench.reference import show_settings
+
+        show_settings(name)
 
 
 @app.command()
@@ -95,11 +142,11 @@ def report(
     scenarios: Paths = None,
     against: Annotated[
         str | None,
-        typer.Option(help="Label of an agent: compare all others with it, in pairs, in `against-LABEL.md` alone."),
+        typer.Option(help="Label of an agent: paired tests against it; writes only `against-LABEL.md`."),
     ] = None,
     results: Results = Path("results"),
 ) -> None:
-    """Print and write the tables and plots of what is recorded; nothing is run."""
+    """Print the tables of recorded episodes and write them with the plots; play nothing."""
     from fogbench.bench.session import compare_all, report_all
 
     if against is None:
@@ -113,13 +160,13 @@ def replay(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a shipped scenario.")],
     agent: Annotated[str, typer.Option(help="Label of the agent.")],
     variant: Annotated[str | None, typer.Option(help="Default: the first.", show_default=False)] = None,
-    episode: Annotated[int, typer.Option(min=0, help="Number of the episode.")] = 0,
+    episode: Annotated[int, typer.Option(min=0, max=999_999, help="Number of the episode.")] = 0,
     out: Annotated[Path, typer.Option(help="`.png` draws a strip of moments, `.gif` every step.")] = Path("replay.png"),
     results: Results = Path("results"),
 ) -> None:
     """Play a recorded episode again, verify that it ends as recorded, and draw it.
 
-    Drawn are the truth, what the agent had seen by then, its current view, and its path.
+    A picture shows the true map, what the agent had seen by then, its current view, and its path.
     """
     from fogbench.bench.playback import replay_recorded
     from fogbench.bench.several import read_all
@@ -133,17 +180,16 @@ def look(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or the name of a shipped scenario.")],
     agent: Annotated[str, typer.Option(help="Label of a network.")],
     variant: Annotated[str | None, typer.Option(help="Default: the first.", show_default=False)] = None,
-    episode: Annotated[int, typer.Option(min=0, help="Number of the episode whose memory is drawn.")] = 0,
+    episode: Annotated[int, typer.Option(min=0, max=999_999, help="Number of the episode whose memory is drawn.")] = 0,
     results: Results = Path("results"),
 ) -> None:
-    """Take a network's recorded decisions again and draw what goes on in it, beside the scenario's results.
+    """Plot a network's features and memory from recorded episodes, beside the scenario's results.
 
-    `tsne-VARIANT-AGENT.png`: its decisions by the image it sees, by what its planning module makes of that, and by its
-    scores, coloured by the optimal move. Over each panel stands how often the nearest decision of another episode has
-    the same one.
+    `tsne-VARIANT-AGENT.png`: t-SNE of its inputs, of the output of its planning module, and of its scores, coloured by
+    the optimal move. Panel title: nearest-neighbour accuracy, over decisions of other episodes.
 
-    `memory-VARIANT-AGENT.png`: what its memory holds, step by step, in one episode; in a tunnel with the steps at
-    which the agent first sees the end wall, turns back, and is out.
+    `memory-VARIANT-AGENT.png`: its memory at each step of one episode; in a tunnel also the steps at which the agent
+    first sees the end wall, turns back, and leaves.
     """
     from fogbench.bench.look import look_inside
     from fogbench.bench.several import read_all
@@ -161,7 +207,8 @@ def train(
         typer.Option(help="Folder for what is written. Default: results/training/NAME.", show_default=False),
     ] = None,
     batches: Annotated[
-        int | None, typer.Option(min=1, help="Batches, instead of what the recipe says.", show_default=False)
+        int | None,
+        typer.Option(min=1, max=10**9, help="Batches, instead of what the recipe says.", show_default=False),
     ] = None,
     seed: Annotated[
         int | None,
@@ -170,10 +217,10 @@ def train(
         ),
     ] = None,
 ) -> None:
-    """Train a network by a recipe; stopped at any moment, the same command goes on from there to the same weights.
+    """Train a network by a recipe. Stop it whenever you like; run the same command again to resume.
 
     A recipe names a network, the worlds where it learns, and how; `learned/recipes/` has those of the shipped
-    checkpoints. As it learns, the network is tried on held-out maps: `log.jsonl` has a line for each trial,
+    checkpoints. Every few batches the network is tried on held-out maps: `log.jsonl` has a line for each trial,
     `learning.png` the curves. The best weights so far are `NAME.safetensors`, with a card beside them that says where
     they come from; a scenario plays them as `macn: {checkpoint: ./NAME.safetensors}`.
     """
@@ -182,13 +229,16 @@ def train(
     try:
         train_recipe(recipe, device.value, out, batches, seed)
     except KeyboardInterrupt:
-        typer.echo("Stopped. The same command goes on from the last saved state.", err=True)
+        typer.echo("Stopped. Run the same command again to resume from the last saved state.", err=True)
         raise typer.Exit(STOPPED) from None
 
 
 @app.command()
 def doctor() -> None:
-    """Compile all kernels; say what is installed, what is missing and how to get it, and how fast this machine is."""
+    """Compile all kernels; say what is installed, what is missing and how to get it, how fast this machine is.
+
+    The last line is a verdict. Exit code 0: all that is installed works. 2: something does not.
+    """
     from fogbench.bench.doctor import examine
 
     examine()
@@ -203,12 +253,14 @@ def _scenarios(names: list[str] | None) -> list[Path]:
 def main() -> None:
     """Run the command line; every mistake of a user ends in lines of text and exit code 2, never in a traceback."""
     from fogbench.bench.environment import set_environment
-    from fogbench.worlds.mistake import Mistake
 
     for line in set_environment():
         typer.echo(line, err=True)
     try:
-        app()
+        for argument in sys.argv[1:]:
+            encodable(argument)
+        with blaming_hidden():
+            app()
     except Mistake as mistake:
         typer.echo(str(mistake), err=True)
         sys.exit(WRONG)

@@ -9,12 +9,14 @@ from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from pkgutil import resolve_name
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from rich.console import Console
 from rich.table import Column, Table
+from rich.text import Text
 from threadpoolctl import threadpool_info
 
 from fogbench.bench.playing.play import play
@@ -23,6 +25,8 @@ from fogbench.learned import LEARNED
 from fogbench.planners import PLANNERS, SPEEDS
 from fogbench.worlds import KINDS
 from fogbench.worlds.kernel import used
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Outcome
 
 PROJECT = "fogbench"
 
@@ -33,35 +37,86 @@ AGENTS = ", ".join([*PLANNERS, *(f"{name}: {{checkpoint: none}}" for name in LEA
 """All that ship with the project."""
 
 
+class Need(NamedTuple):
+    """A package that the project needs."""
+
+    name: str
+    found: str
+    """Its version here; empty: missing."""
+    versions: SpecifierSet
+    extra: str
+    """That needs it; empty: everything does."""
+
+    @property
+    def remedy(self) -> str:
+        """What puts it right; empty where nothing is wrong."""
+        if self.found and self.versions.contains(self.found, prereleases=True):
+            return ""
+        told = f"needs {self.name}{self.versions}" if self.found else "missing"
+        return f'{told}: pip install ".[{self.extra}]"' if self.extra else f"{told}: pip install ."
+
+
 def examine() -> None:
-    """Print it all."""
-    console = Console()
-    console.print(_packages())
+    """Print it all, and a verdict.
+
+    Raises:
+        Mistake: something that is installed does not work, or what everything needs is missing.
+    """
+    console, needs = Console(), [_need(Requirement(text)) for text in _requirements()]
+    console.print(_packages(needs))
     with console.status("Compiling the kernels, and timing them"):
-        rehearse()
+        crashed = rehearse()
         machine, speeds = _machine(), _speeds()
     console.print(machine)
     console.print(speeds)
+    console.print(_verdict(needs, crashed), markup=False, highlight=False, soft_wrap=True)
 
 
-def rehearse() -> None:
-    """Play an episode of every shipped agent that can play here, so that all its kernels are compiled and kept."""
+def _verdict(needs: list[Need], crashed: list[str]) -> str:
+    """One line: that everything works, or which extras are missing.
+
+    Raises:
+        Mistake: as `examine`.
+    """
+    broken = [f"{need.name} {need.remedy}" for need in needs if need.remedy and (need.found or not need.extra)]
+    if broken or crashed:
+        raise Mistake(f"Verdict: broken. {'; '.join([*broken, *crashed])}")
+    missing = {need.extra: need.name for need in needs if need.remedy}
+    if not missing:
+        return "Verdict: everything works."
+    ways = ", ".join(f'{package} (pip install ".[{extra}]")' for extra, package in missing.items())
+    return f"Verdict: all that is installed works. Missing: {ways}."
+
+
+def rehearse() -> list[str]:
+    """Play an episode of every shipped agent that can play here, so that all its kernels are compiled and kept.
+
+    Returns:
+        Which agents crashed, and why.
+    """
+    crashed = []
     for name, kind in ((name, kind) for name, kind in KINDS.items() if kind.rehearsal):
         text = f"name: rehearsal\nkind: {name}{kind.rehearsal}agents: [{AGENTS}]\nepisodes: 1\n"
         scenario = read_scenario(text, Path(__file__))
         for variant in scenario.variants:
             for entry in variant.agents:
                 if not entry.skipped:
-                    play(scenario, variant, entry, episode=0, workers=1)
+                    row = play(scenario, variant, entry, episode=0, workers=1)
+                    crashed += [f"{entry.label}: {row.detail}"] if row.outcome == Outcome.CRASHED.name else []
+    return crashed
 
 
-def _packages() -> Table:
+def _packages(needs: list[Need]) -> Table:
     table = Table("package", "installed", "needed for", title="Packages")
-    for need in map(Requirement, _requirements()):
-        extra = str(need.marker).rpartition("extra == ")[2].strip('"') if need.marker else ""
-        missing = f'missing: pip install ".\\[{extra}]"' if extra else "missing: pip install ."
-        table.add_row(need.name, _version(need.name) or missing, f"the extra {extra}" if extra else "everything")
+    for need in needs:
+        told = " ".join(filter(None, (need.found, need.remedy)))
+        table.add_row(need.name, Text(told), f"the extra {need.extra}" if need.extra else "everything")
     return table
+
+
+def _need(need: Requirement) -> Need:
+    extra = str(need.marker).rpartition("extra == ")[2].strip('"') if need.marker else ""
+    return Need(need.name, _version(need.name), need.specifier, extra)
 
 
 def _requirements() -> list[str]:

@@ -1,20 +1,22 @@
-"""What is at hand: scenarios, map families and agents, told without importing any of them."""
+"""What is at hand: scenarios, map families, agents and learners, told without importing any of them."""
 
 import yaml
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from fogbench.bench.reading.tables import agents, families, first_sentence
+from fogbench.bench.reading.tables import LEARNER, agents, families, first_sentence
 from fogbench.bench.shipped import find, folder
 
 
 def show() -> None:
-    """Print the three tables."""
+    """Print a table of each, and how to see more."""
     console = Console()
     console.print(_scenarios())
     console.print(_classes("Map families", families()))
     console.print(_classes("Agents", agents()))
+    console.print(_classes("Ways to learn", LEARNER.targets()))
+    console.print(Text("`fogbench list NAME` shows the settings of a name; so do sensor, budget, scenario and recipe."))
 
 
 def _scenarios() -> Table:

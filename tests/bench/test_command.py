@@ -1,6 +1,7 @@
 """The command line, as a user meets it: what it prints, writes, and ends with."""
 
 import json
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -124,15 +125,41 @@ def test_settings_that_cannot_be_hashed_play_like_others(fogbench: Fogbench) -> 
     assert fogbench("run", "listed.yaml")[0] == 0
 
 
-def test_a_scenario_that_cannot_be_run_does_not_stop_the_next(fogbench: Fogbench) -> None:
-    """The others are played, and the exit code says that something was wrong."""
+def test_what_cannot_be_played_is_told_before_anything_is(fogbench: Fogbench) -> None:
+    """With its place, by a check and by a run."""
     write("fine")
     impossible = SMALL.format(name="bad", agents="[astar]") + "tasks: {distance: [90, 99]}\n"
     Path("bad.yaml").write_text(impossible)
-    code, out, err = fogbench("run", "bad.yaml", "fine.yaml")
-    assert (code, "2 were played now" in out) == (2, True)
-    reason = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
-    assert err in {f"all, episode {episode}: {reason}" for episode in (0, 1)}  # whichever worker is first
+    reason = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps."
+    for command in ("check", "run"):
+        assert fogbench(command, "bad.yaml", "fine.yaml") == (2, "", f"bad.yaml:4:8  maps.blobs: {reason}\n")
+    assert not Path("results").exists()
+
+
+@pytest.mark.parametrize(
+    ("workers", "told"), [("100000", "got 100000; expected at most"), ("0", "--workers"), ("-1", "--workers")]
+)
+def test_workers_have_bounds(workers: str, told: str, fogbench: Fogbench) -> None:
+    """More than the machine could hold are refused before any is started."""
+    write("small")
+    code, _, err = fogbench("run", "small.yaml", "--workers", workers)
+    assert (code, told in err) == (2, True)
+
+
+def test_names_that_are_not_utf_8_are_told(fogbench: Fogbench) -> None:
+    """Whether they are given, or lie in a folder that is."""
+    name = os.fsdecode(b"caf\xe9.yaml")
+    write("small")
+    Path("small.yaml").rename(name)
+    told = "'caf\\udce9.yaml': got a name that is not UTF-8; expected one that can be printed.\n"
+    for place in (name, "."):
+        assert fogbench("check", place) == (2, "", told)
+
+
+def test_a_version_is_said(fogbench: Fogbench) -> None:
+    """In one line."""
+    code, out, _ = fogbench("--version")
+    assert (code, out.count("\n"), out.startswith("fogbench")) == (0, 1, True)
 
 
 def test_every_mistake_of_every_file_is_told_at_once(fogbench: Fogbench) -> None:
@@ -168,6 +195,7 @@ def test_the_other_commands_answer(fogbench: Fogbench) -> None:
     write("small")
     for arguments, word in (
         (["list"], "dstar_lite"),
+        (["list", "dstar_lite"], "dstar_lite has no settings"),
         (["check", "small.yaml"], "2 episodes of 1 agent"),
         (["doctor"], "CPUs"),
     ):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError
@@ -11,9 +12,10 @@ import pytest
 from packaging.requirements import Requirement
 
 import fogbench
-from fogbench.bench.doctor import _requirements, examine
+from fogbench.bench.doctor import _need, _requirements, _verdict, examine
 from fogbench.learned import LEARNED
 from fogbench.planners import PLANNERS
+from fogbench.worlds.mistake import Mistake
 
 PLAYED = """
 import json, sys
@@ -84,12 +86,37 @@ def test_what_is_missing_is_told_with_the_way_to_get_it(
     for module in needy:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setattr("fogbench.bench.doctor.used", lambda: None)
-    examine()
+    with pytest.raises(Mistake) as caught:
+        examine()
+    assert str(caught.value) == "Verdict: broken. fog-lamp missing: pip install ."
     told = rows(capsys.readouterr().out)
     assert ["fog-lamp", "missing: pip install .", "everything"] in told
     assert ["fog-horn", 'missing: pip install ".[noise]"', "the extra noise"] in told
     assert ["kernels", "compiled by each process for itself: no place can be written"] in told
     assert not [row for row in told if row[:1] == ["value iteration, 128 maps of 16x16, 20 times"]]
+
+
+BETTER = 'Verdict: all that is installed works. Missing: fog-horn (pip install ".[noise]").'
+
+
+@pytest.mark.parametrize(
+    ("needs", "crashed", "verdict"),
+    [
+        ([], [], "Verdict: everything works."),
+        (["numpy>=1"], [], "Verdict: everything works."),
+        (['fog-horn; extra == "noise"'], [], BETTER),
+        (["numpy<1"], [], "Verdict: broken. numpy needs numpy<1: pip install ."),
+        ([], ["astar: no"], "Verdict: broken. astar: no"),
+    ],
+)
+def test_a_verdict_ends_it(needs: list[str], crashed: list[str], verdict: str) -> None:
+    """Extras may be missing; what is installed must work, and what everything needs must be there."""
+    read = [_need(Requirement(need)) for need in needs]
+    if "broken" in verdict:
+        with pytest.raises(Mistake, match=re.escape(verdict)):
+            _verdict(read, crashed)
+    else:
+        assert _verdict(read, crashed) == verdict
 
 
 def test_a_checkout_knows_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
