@@ -3,8 +3,10 @@
 import re
 from pathlib import Path
 from pkgutil import resolve_name
+from typing import Any
 
 import pytest
+import torch
 
 import fogbench
 from fogbench.bench.playing.play import play
@@ -26,6 +28,15 @@ maps: {"./example.py:Salt": {size: 8, share: 0.1}}
 sensor: {radius: 2}
 budget: {steps: 40}
 agents: [astar, "./planner.py:MyPlanner"]
+episodes: 1
+"""
+
+GRU = """
+name: gru
+maps: {blobs: {size: 8, obstacles: [1, 4], obstacle_size: [1, 2]}}
+sensor: {radius: 2}
+rules: {collision: blocked}
+budget: {steps: 10}
 episodes: 1
 """
 
@@ -75,10 +86,24 @@ def test_the_readme_plays(tmp_path: Path) -> None:
 
 def test_the_ways_to_extend_play(tmp_path: Path) -> None:
     """The planner and the map family of the page, together."""
-    planner, family = examples(EXTENDING, "python")
+    planner, _, family = examples(EXTENDING, "python")
     (tmp_path / "planner.py").write_text(planner)
     (tmp_path / "example.py").write_text(family)
     assert outcomes(read_scenario(FAMILIES, tmp_path / "mine.yaml")) == {Outcome.REACHED.name}
+
+
+def test_the_plain_network_plays_with_its_weights(tmp_path: Path) -> None:
+    """Its bytes are those of its tensors: 64 numbers of state, and the weights of a GRU cell and a linear layer."""
+    _, network, _ = examples(EXTENDING, "python")
+    (tmp_path / "gru.py").write_text(network)
+    module: dict[str, Any] = {"__name__": "gru"}
+    exec(network, module)
+    torch.save(module["Brain"]().state_dict(), tmp_path / "gru.pt")
+    agents = 'agents: ["./gru.py:Gru": {weights: gru.pt}]'
+    (variant,) = (scenario := read_scenario(GRU + agents, tmp_path / "mine.yaml")).variants
+    row = play(scenario, variant, variant.agents[0], 0, 1)
+    assert (row.outcome != Outcome.CRASHED.name, row.peak_memory_bytes) == (True, 4 * 64)
+    assert row.parameter_bytes == 4 * (3 * 64 * (27 + 64 + 2) + 4 * (64 + 1))
 
 
 def test_every_name_of_the_face_has_a_word() -> None:

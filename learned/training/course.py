@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import torch
 
 from fogbench.learned import checkpoint
-from fogbench.learned.training.recipe import Recipe
+from fogbench.learned.training.recipe import Recipe, differences
 from fogbench.learned.training.trials import refuse_unplayable, validate
 from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake
@@ -125,6 +125,7 @@ class Course:
     def _save(self) -> None:
         state = {
             "recipe": digest(self.recipe.words()),
+            "settings": self.recipe.settings(),
             "threads": torch.get_num_threads(),
             **self.student.state(),
             **{name: getattr(self, name) for name in KEPT},
@@ -144,19 +145,23 @@ class Course:
         except Mistake:
             raise
         except Exception:  # noqa: BLE001  whatever a broken file does to its reader
-            raise Mistake(f"{self._state}: got a broken file; expected a training's state, or a new folder.") from None
+            raise Mistake(f"{self._state}: got a broken file; choose another folder with --out.") from None
 
     def _recognise(self, state: Mapping[str, Any]) -> None:
         """Hold a state against this course, which must come to the same end as the one that left it."""
+        other = "choose another with --out"
+        if "settings" not in state:
+            raise Mistake(f"{self.folder}: This folder holds a training of another version of fogbench; {other}.")
         threads, before = torch.get_num_threads(), state["threads"]
         if state["recipe"] != digest(self.recipe.words()):
-            expected = "this one's, its batches and seed included, or a new folder"
-            raise Mistake(f"{self.folder}: got a training by another recipe; expected {expected}.")
+            told = differences(state["settings"], self.recipe.settings()) or "a file that it names has other contents"
+            start = f"To start from its weights, name {self.weights} as the `checkpoint` of the recipe's network."
+            raise Mistake(f"{self.folder}: This folder holds a training with other settings ({told}); {other}. {start}")
         if threads != before:
-            expected = f"{before} as before (OMP_NUM_THREADS={before}), or a new folder"
-            raise Mistake(f"{self.folder}: got {threads} threads for its training; expected {expected}.")
+            way = f"set OMP_NUM_THREADS={before}, or {other}"
+            raise Mistake(f"{self.folder}: This folder holds a training on {before} threads, now {threads}; {way}.")
         if state["best"] and not self.weights.exists():
-            raise Mistake(f"{self.weights}: got no such file; expected the best weights so far, or a new folder.")
+            raise Mistake(f"{self.weights}: missing; this file has the best weights so far. Restore it, or {other}.")
 
 
 def _mean(variants: Mapping[str, Mapping[str, float]], metric: str) -> float:

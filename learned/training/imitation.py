@@ -8,10 +8,10 @@ from pydantic import Field
 from fogbench.learned.training.recipe import Recipe, Student
 from fogbench.worlds.settings import Positive, Probability, Settings
 
-Rate = Annotated[float, Field(gt=0)]
+Rate = Annotated[float, Field(gt=0, le=1000)]
 """A number above 0."""
 
-Weight = Annotated[float, Field(ge=0)]
+Weight = Annotated[float, Field(ge=0, le=1000)]
 """A number from 0."""
 
 
@@ -49,6 +49,7 @@ class Imitation(Settings):
     teacher: Teacher = Teacher()
     curriculum: Curriculum | None = None
     optimiser: Literal["adam", "rmsprop"] = "adam"
+    """Adam or RMSProp, as PyTorch has them."""
     rate: tuple[Rate, Rate] = (1e-3, 1e-4)
     """Learning rate over the first half of the batches, and at the end of the second, over which it falls."""
     clip: Rate = 5.0

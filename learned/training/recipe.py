@@ -2,7 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Protocol
+
+from pydantic import Field
 
 from fogbench.worlds.settings import Positive, Settings
 from fogbench.worlds.types import MapFamily
@@ -10,11 +12,14 @@ from fogbench.worlds.types import MapFamily
 if TYPE_CHECKING:
     from fogbench.learned.policy import Policy
 
+TOLD = 3
+"""Differences of two recipes that are told one by one."""
+
 
 class Validation(Settings):
     """How often, and on how much, a network is tried while it learns."""
 
-    episodes: Positive = 200
+    episodes: Annotated[int, Field(ge=1, le=10_000)] = 200
     """Held-out episodes of each variant."""
     every: Positive = 50
     """Batches between two trials."""
@@ -106,6 +111,13 @@ class Recipe:
         for name, worlds in self.held_out.items():
             yield name, worlds, worlds.family
 
+    def settings(self) -> dict[str, Any]:
+        """All that it says, by the keys of its file and the places of `places`: what a difference is told by."""
+        said: dict[str, Any] = {"name": self.name, "seed": self.seed, "network": self.network}
+        said |= {"learning": self.learning, "validation": self.validation}
+        worlds = {place: {"maps": family, **dict(conditions)} for place, (_, conditions), family in self.places()}
+        return flat(said | worlds)
+
     def words(self) -> str:
         """All that fixes what a training leaves, as text."""
         how = self.network.words(), self.learning.words(), self.validation.words(), str(self.seed)
@@ -115,3 +127,20 @@ class Recipe:
             for part in (place, family.words(), conditions.words())
         )
         return "\n".join((self.name, *how, *worlds))
+
+
+def flat(said: Any, above: str = "") -> dict[str, Any]:
+    """Settings in settings, each by the keys that lead to it: `{"network.hidden": 256}`."""
+    if isinstance(said, Settings):
+        said = said.model_dump(mode="json")
+    if not isinstance(said, Mapping):
+        return {above: said}
+    below = [flat(inner, f"{above}.{name}".lstrip(".")) for name, inner in said.items()]
+    return {key: value for inner in below for key, value in inner.items()}
+
+
+def differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+    """What differs between two `settings`: `learning.batches 30, now 40`; empty where nothing does."""
+    odd = [key for key in {**before, **now} if before.get(key, "missing") != now.get(key, "missing")]
+    told = [f"{key} {before.get(key, 'missing')}, now {now.get(key, 'missing')}" for key in odd[:TOLD]]
+    return "; ".join([*told, f"and {len(odd) - TOLD} more"] if len(odd) > TOLD else told)

@@ -239,8 +239,31 @@ def test_another_recipe_s_folder_is_refused(changes: dict[str, Any], tmp_path: P
         pass
     with pytest.raises(Mistake) as caught:
         Course(recipe(**{"batches": 1, **changes}), tmp_path, {})
-    expected = "this one's, its batches and seed included, or a new folder"
-    assert str(caught.value) == f"{tmp_path}: got a training by another recipe; expected {expected}."
+    told = f"{tmp_path}: This folder holds a training with other settings ("
+    assert str(caught.value).startswith(told)
+    assert "a file that it names" not in str(caught.value)
+
+
+def test_what_differs_is_told_with_the_way_on(tmp_path: Path) -> None:
+    """Setting by setting, and how its weights can be used all the same."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    with pytest.raises(Mistake) as caught:
+        Course(recipe(batches=2), tmp_path, {})
+    assert str(caught.value) == (
+        f"{tmp_path}: This folder holds a training with other settings (learning.batches 1, now 2); "
+        "choose another with --out. To start from its weights, "
+        f"name {tmp_path / 'tiny.safetensors'} as the `checkpoint` of the recipe's network."
+    )
+
+
+def test_a_state_of_another_version_is_refused(tmp_path: Path) -> None:
+    """One that does not say its settings was written before states did."""
+    ended(Course(recipe(batches=1), tmp_path, {}))
+    state = torch.load(tmp_path / "state.pt", weights_only=True)
+    del state["settings"]
+    torch.save(state, tmp_path / "state.pt")
+    with pytest.raises(Mistake, match="holds a training of another version of fogbench; choose another with --out"):
+        Course(recipe(batches=1), tmp_path, {})
 
 
 def test_another_variant_s_folder_is_refused(tmp_path: Path) -> None:
@@ -249,7 +272,7 @@ def test_another_variant_s_folder_is_refused(tmp_path: Path) -> None:
     for _ in Course(read_recipe(text + "variants: {a: {}}\n", Path("tiny.yaml")), tmp_path, {}).go_on():
         pass
     for other in ("{b: {}}", "{a: {budget: {steps: 9}}}", "{a: {}, b: {}}"):
-        with pytest.raises(Mistake, match="got a training by another recipe"):
+        with pytest.raises(Mistake, match="holds a training with other settings"):
             Course(read_recipe(f"{text}variants: {other}\n", Path("tiny.yaml")), tmp_path, {})
 
 
@@ -264,8 +287,8 @@ def test_other_threads_are_refused(tmp_path: Path) -> None:
     finally:
         torch.set_num_threads(threads)
     assert str(caught.value) == (
-        f"{tmp_path}: got {threads + 1} threads for its training; "
-        f"expected {threads} as before (OMP_NUM_THREADS={threads}), or a new folder."
+        f"{tmp_path}: This folder holds a training on {threads} threads, now {threads + 1}; "
+        f"set OMP_NUM_THREADS={threads}, or choose another with --out."
     )
 
 
@@ -275,8 +298,8 @@ def test_best_weights_that_are_gone_are_missed(tmp_path: Path) -> None:
     (tmp_path / "tiny.safetensors").unlink()
     with pytest.raises(Mistake) as caught:
         Course(recipe(batches=1), tmp_path, {})
-    expected = "expected the best weights so far, or a new folder."
-    assert str(caught.value) == f"{tmp_path / 'tiny.safetensors'}: got no such file; {expected}"
+    told = "missing; this file has the best weights so far. Restore it, or choose another with --out."
+    assert str(caught.value) == f"{tmp_path / 'tiny.safetensors'}: {told}"
 
 
 SHIPPED = sorted(Path(learned.__file__).parent.glob("recipes/*.yaml"))
@@ -302,7 +325,7 @@ def test_a_state_of_another_network_is_refused(tmp_path: Path) -> None:
     state = torch.load(tmp_path / "state.pt", weights_only=True)
     state["network"].popitem()
     torch.save(state, tmp_path / "state.pt")
-    with pytest.raises(Mistake, match="got a broken file; expected a training's state, or a new folder"):
+    with pytest.raises(Mistake, match="got a broken file; choose another folder with --out"):
         Course(recipe(batches=1), tmp_path, {})
 
 
@@ -314,4 +337,4 @@ def test_a_broken_state_is_refused(broken: bytes | None, tmp_path: Path) -> None
     state.write_bytes(state.read_bytes()[:-500] if broken is None else broken)
     with pytest.raises(Mistake) as caught:
         Course(recipe(batches=1), tmp_path, {})
-    assert str(caught.value) == f"{state}: got a broken file; expected a training's state, or a new folder."
+    assert str(caught.value) == f"{state}: got a broken file; choose another folder with --out."
