@@ -8,7 +8,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 from rich.progress import TimeRemainingColumn as Eta
 
 from fogbench.bench.playing import runner
+from fogbench.bench.reporting.plain import folded
 from fogbench.worlds.types import Outcome
+
+LONG = 40
+"""Characters of a name beside a bar."""
 
 
 class Bars:
@@ -25,7 +29,7 @@ class Bars:
             TextColumn("{task.fields[reached]}", markup=False),
         )
         self.bars = Progress(*columns, console=console, speed_estimate_period=600)
-        self.whole = self.bars.add_task(name, total=0, reached="")
+        self.whole = self.bars.add_task(folded(name, LONG, 1), total=0, reached="")
         self.agents: dict[tuple[str, str], TaskID] = {}
         self.reached: dict[tuple[str, str], int] = {}
 
@@ -61,5 +65,7 @@ class Bars:
         whole = self.bars.tasks[self.whole]
         self.bars.update(self.whole, total=(whole.total or 0) + news.total, completed=whole.completed + news.done)
         self.reached[pair] = 0
-        name = f"  {news.variant} · {news.agent}"
-        self.agents[pair] = self.bars.add_task(name, total=news.total, completed=news.done, visible=False, reached="")
+        name = f"{news.variant} · {news.agent}"
+        self.agents[pair] = self.bars.add_task(
+            f"  {folded(name, LONG, 1)}", total=news.total, completed=news.done, visible=False, reached=""
+        )

@@ -1,6 +1,5 @@
 """What the commands do with scenario files: run them, report on them."""
 
-import re
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,16 +15,22 @@ from fogbench.bench.playing.provenance import differences, read_run, versions_of
 from fogbench.bench.playing.runner import Summary, run
 from fogbench.bench.progress import Bars
 from fogbench.bench.reading.scenario import Scenario
-from fogbench.bench.reporting.report import READS, print_tables, summary, write_report
+from fogbench.bench.reporting.plain import escaped, stems
+from fogbench.bench.reporting.report import READS, print_tables, summary, write_plots, write_tables
 from fogbench.bench.reporting.sections import comparisons
 from fogbench.bench.reporting.tables import markdown, print_table
 from fogbench.bench.several import each, read_all, say
-from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake, unknown
 from fogbench.worlds.types import Outcome
 
 EACH = 16
 """Workers of a CPU at most: each takes some hundred megabytes."""
+
+OUTDATED = (
+    "{folder}: none of {count} recorded episodes counts any more: settings, sources or packages have changed. The "
+    "tables stay as they are; `fogbench run` plays the episodes again."
+)
+"""What a user is told in place of a report without a number."""
 
 
 def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, results: Path) -> bool:
@@ -65,15 +70,16 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
     console = Console()
 
     def compare(scenario: Scenario) -> None:
-        scenario, folder = _against(scenario, label), results / scenario.name
+        labels, folder = _labels(scenario), results / scenario.name
+        scenario = _against(scenario, label)
         read_run(folder)
         frame = store.read(folder, scenario, READS, versions_of(folder))
         lines = comparisons(summary(frame, scenario), scenario)
         if not lines.rows:
             raise Mistake(f"{folder}: got no episodes of {label} beside those of another agent; expected both.")
         print_table("Paired", lines, console)
-        page = folder / ("-".join(["against", *re.findall(r"\w+", label)]) + ".md")
-        write(page, f"# {scenario.name}, against {label}\n\n{markdown(lines)}".encode())
+        page = folder / f"against-{stems(labels)[label]}.md"
+        store.write(page, f"# {escaped(scenario.name)}, against {escaped(label)}\n\n{markdown(lines)}".encode())
         say(f"The table is in {page}", console)
         _say_differences(scenario, folder, console)
 
@@ -81,11 +87,15 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
 
 
 def _against(scenario: Scenario, label: str) -> Scenario:
-    labels = dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents)
+    labels = _labels(scenario)
     if label not in labels:
         raise unknown(f"--against, {scenario.path}", label, labels)
     having = [variant for variant in scenario.variants if any(entry.label == label for entry in variant.agents)]
     return replace(scenario, variants=tuple(replace(variant, reference=label) for variant in having))
+
+
+def _labels(scenario: Scenario) -> list[str]:
+    return list(dict.fromkeys(entry.label for variant in scenario.variants for entry in variant.agents))
 
 
 def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> bool:
@@ -105,11 +115,16 @@ def _counts(played: Summary) -> str:
 def _report(scenario: Scenario, folder: Path, console: Console, versions: Versions | None) -> bool:
     """Write and print a report of what was played under some versions of packages; whether an agent crashed or hung."""
     run_facts = read_run(folder)
-    frame = store.read(folder, scenario, READS, versions)
-    table = write_report(frame, scenario, run_facts, folder)
+    frame, stale = store.read(folder, scenario, READS, versions), store.stale(folder, scenario, versions)
+    if frame.empty and stale and (folder / "summary.md").exists():
+        say(OUTDATED.format(folder=folder, count=sum(stale.values())), console)
+        return False
+    table = write_tables(frame, scenario, run_facts, folder)
     print_tables(frame, table, scenario, console)
-    for (variant, agent), count in store.stale(folder, scenario, versions).items():
+    for (variant, agent), count in stale.items():
         say(store.STALE.format(count=count, agent=agent, variant=variant), console)
+    for line in write_plots(frame, table, scenario, run_facts, folder):
+        say(line, console)
     say(f"Tables and plots are in {folder}/", console)
     return bool(frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name]).any())
 

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from fogbench.bench.reading.scenario import Scenario, ScenarioError, read_scenario, text_of
 from fogbench.bench.reading.sorts import other_sort
+from fogbench.bench.reporting.plain import plain, printable
 from fogbench.worlds.mistake import Mistake
 
 Answer = TypeVar("Answer")
@@ -57,7 +58,7 @@ def each(scenarios: list[Scenario], console: Console, do: Callable[[Scenario], A
     """Do the same with each scenario that is not skipped; a mistake in one does not stop the others."""
     answers, mistakes = [], []
     for scenario in scenarios:
-        console.rule(Text(scenario.name), align="left")
+        console.rule(Text(plain(scenario.name)), align="left")
         say(scenario.about, console, style="dim")
         if scenario.skipped:
             say(f"Skipped: {scenario.skipped}.", console, style="yellow")
@@ -73,4 +74,4 @@ def each(scenarios: list[Scenario], console: Console, do: Callable[[Scenario], A
 
 def say(text: str, console: Console, style: str | None = None) -> None:
     """Print a text as it is."""
-    console.print(text, style=style, highlight=False, markup=False)
+    console.print(Text(printable(text)), style=style, soft_wrap=True)

@@ -3,16 +3,17 @@
 from collections.abc import Mapping
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from fogbench.bench.reporting.panels import COLOURS, STYLE
+from fogbench.bench.reporting.canvas import Axes, Figure, Line2D
+from fogbench.bench.reporting.panels import COLOURS, magnitudes, named
+from fogbench.bench.reporting.plain import folded
 from fogbench.bench.reporting.tables import Lines
 from fogbench.worlds.types import Array
 
 DASHES = ("--", ":", "-.")
+
+WIDE = 120
+"""Characters in a line of the title."""
 
 
 def changes(held: Array) -> Array:
@@ -37,18 +38,18 @@ def activations(parts: Mapping[str, Array], marks: Mapping[str, int], title: str
     """
     marks = _together(marks)
     heights = [float(np.clip(held.shape[1] / 100, 1.2, 2.4)) for held in parts.values()]
-    with rc_context({**STYLE, "axes.grid": False}):
-        figure = Figure(figsize=(9, 2.6 + sum(heights)), layout="constrained")
-        *maps, below = figure.subplots(len(parts) + 1, 1, sharex=True, height_ratios=[*heights, 1.8])
-        for axes, (part, held) in zip(maps, parts.items(), strict=True):
-            _heat(axes, held)
-            axes.set_ylabel(part)
-        maps[0].set_title(title, loc="left")
-        _changes(below, parts)
-        for axes in (*maps, below):
-            lines = _mark(axes, marks)
-        if marks:
-            figure.legend(lines, _named(marks), loc="outside upper right", ncols=len(marks))
+    figure = Figure(figsize=(9, 2.6 + sum(heights)), layout="constrained")
+    *maps, below = figure.subplots(len(parts) + 1, 1, sharex=True, height_ratios=[*heights, 1.8])
+    for axes, (part, held) in zip(maps, parts.items(), strict=True):
+        _heat(axes, held)
+        axes.set_ylabel(part)
+    maps[0].set_title(folded(title, WIDE), loc="left")
+    _changes(below, parts)
+    for axes in (*maps, below):
+        axes.grid(visible=False)
+        lines = _mark(axes, marks)
+    if marks:
+        named(figure, lines, _named(marks))
     return figure
 
 
@@ -84,4 +85,5 @@ def _changes(axes: Axes, parts: Mapping[str, Array]) -> None:
     for (part, held), colour in zip(parts.items(), COLOURS, strict=False):
         axes.plot(changes(held), color=colour, linewidth=1, label=part)
     axes.set(xlabel="step", ylabel="Euclidean change", yscale="log", xlim=(-0.5, len(held) - 0.5))
+    magnitudes(axes.yaxis)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=len(parts))

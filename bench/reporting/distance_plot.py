@@ -5,13 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.canvas import Axes, Figure, FuncFormatter
 from fogbench.bench.reporting.curves import Bin, by_distance, distance_bins
-from fogbench.bench.reporting.panels import Look, Looks, arranged, legend, percent
+from fogbench.bench.reporting.panels import NARROW, Look, Looks, arranged, legend, magnitudes, percent
+from fogbench.bench.reporting.plain import folded
 from fogbench.bench.reporting.tables import scaled
 from fogbench.worlds import unit_of
 
@@ -39,7 +38,7 @@ def against_distance(frames: Frames, looks: Looks, scenario: Scenario) -> Figure
         success.remove()
         memory.remove()
     for (success, memory), names in zip(panels, joined, strict=False):
-        success.set_title(names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}")
+        success.set_title(folded(names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}", NARROW))
         for look, bins in _lines([frames[name] for name in names], looks):
             _draw(success, memory, look, bins)
         _scale(success, memory)
@@ -93,6 +92,7 @@ def _scale(success: Axes, memory: Axes) -> None:
     success.tick_params(labelbottom=False)
     if distances.max() > WIDE * distances.min():
         memory.set_xscale("log")
+        magnitudes(memory.xaxis)
 
 
 def _sizes(axes: Axes) -> None:

@@ -1,17 +1,11 @@
-"""How plots look: one colour, mark and dash for each agent, a panel for each variant, one legend for them all.
+"""How plots look: one colour, mark and dash for each agent, a panel for each variant, one legend for them all."""
 
-Figures are made without pyplot, so nothing global is touched and no window is ever opened.
-"""
-
-from collections.abc import Collection, Mapping
-from typing import Any, NamedTuple
-
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.typing import LineStyleType
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
 
 from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.canvas import Artist, Axes, Axis, Figure, Line2D, LineStyleType, LogFormatter
+from fogbench.bench.reporting.plain import folded
 from fogbench.bench.reporting.trainings import network_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C6D31")
@@ -21,20 +15,8 @@ MARKS = "os^Dvph<>d"
 
 DASHES: tuple[LineStyleType, ...] = ("-", "--", ":", "-.")
 
-STYLE: dict[Any, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "grid.color": "#E5E5E5",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "lines.linewidth": 1.5,
-    "lines.markersize": 5,
-}
+NARROW, BROAD = 28, 40
+"""Characters of a name in a line of a panel, and of a legend."""
 
 
 class Look(NamedTuple):
@@ -69,7 +51,7 @@ def panels_of(names: Collection[str], looks: Looks, x: str, y: str) -> tuple[Fig
     for axes in panels[len(names) :]:
         axes.remove()
     for axes, name in zip(panels, names, strict=False):
-        axes.set_title(name)
+        axes.set_title(folded(name, NARROW))
     figure.supxlabel(x, fontsize="medium")
     figure.supylabel(y, fontsize="medium")
     legend(figure, looks, lines=True)
@@ -84,17 +66,38 @@ def arranged(panels: int) -> tuple[int, int]:
 
 def legend(figure: Figure, looks: Looks, *, lines: bool) -> None:
     """One legend over the figure, in as many columns as fit; without `lines` it shows the marks alone."""
+    looks = {network_of(agent): look for agent, look in looks.items()}
     handles = [
-        Line2D([], [], color=look.color, marker=look.marker, linestyle=look.linestyle if lines else "", label=network)
-        for network, look in {network_of(agent): look for agent, look in looks.items()}.items()
+        Line2D([], [], color=look.color, marker=look.marker, linestyle=look.linestyle if lines else "")
+        for look in looks.values()
     ]
+    named(figure, handles, list(looks), handlelength=3 if lines else 1)
+
+
+def named(figure: Figure, handles: Sequence[Artist], names: Sequence[str], **settings: float) -> None:
+    """A legend over the figure, which grows by it; no name is left out, whatever it begins with."""
     for columns in range(len(handles), 0, -1):
-        length = 3 if lines else 1
-        drawn = figure.legend(handles=handles, loc="outside upper center", ncols=columns, handlelength=length)
+        drawn = figure.legend(handles, ["x"] * len(names), loc="outside upper center", ncols=columns, **settings)
+        for text, name in zip(drawn.get_texts(), names, strict=True):
+            text.set_text(folded(name, BROAD))  # Matplotlib leaves out a label that begins with `_`
         if columns == 1 or drawn.get_window_extent().width <= figure.bbox.width:
             break
         drawn.remove()
     figure.set_figheight(figure.get_figheight() + drawn.get_window_extent().height / figure.dpi)
+
+
+class Plainly(LogFormatter):
+    """Numbers such as 0.01 where Matplotlib labels a logarithmic axis: its own powers of ten are mark-up."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        """The number at a tick; empty where a label would be too near to others."""
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+def magnitudes(axis: Axis) -> None:
+    """Label an axis that is logarithmic already."""
+    axis.set_major_formatter(Plainly(labelOnlyBase=True))
+    axis.set_minor_formatter(Plainly())
 
 
 def percent(axes: Axes) -> None:

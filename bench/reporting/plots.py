@@ -1,30 +1,33 @@
-"""The plots of a report: one PNG each, a panel for each variant, one colour and mark for each agent in all of them.
+"""The plots of a report: one PNG each, a panel for each variant, one colour and mark for each agent in all of them."""
 
-Figures are made without pyplot, so nothing global is touched and no window is ever opened.
-"""
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 import pandas as pd
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting import canvas
+from fogbench.bench.reporting.canvas import STYLE, Axes, Figure
 from fogbench.bench.reporting.curves import Steps, success_by_seconds, success_by_steps
 from fogbench.bench.reporting.distance_plot import Frames, against_distance
-from fogbench.bench.reporting.panels import MARKS, STYLE, Looks, legend, looks_of, panels_of, percent
+from fogbench.bench.reporting.panels import MARKS, Looks, legend, looks_of, magnitudes, panels_of, percent
+from fogbench.bench.reporting.plain import folded
 from fogbench.bench.reporting.words import reference_name
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Array
 
 FAR = 1.5
 """So many times the median ratio, the axis of ratios ends."""
 
 
-def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: Path) -> list[str]:
+ACROSS = 20
+"""Characters in a line of a variant's name below an axis."""
+
+
+def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: Path) -> tuple[list[str], list[str]]:
     """Write the plots into `folder`; none if no episode is recorded.
 
     Args:
@@ -34,27 +37,30 @@ def draw(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, folder: P
         folder: must be there.
 
     Returns:
-        The names of the files.
+        The names of the files, and a line on each that could not be drawn or written.
     """
-    figures = draw_figures(frame, table, scenario) if len(frame) else {}
-    for name, figure in figures.items():
-        figure.savefig(folder / name, dpi=200)
-    return list(figures)
+    drawn, missing = list[str](), list[str]()
+    for name, make in figures(frame, table, scenario).items() if len(frame) else ():
+        try:
+            canvas.draw(make, folder / name)
+            drawn.append(name)
+        except Mistake as mistake:
+            missing.append(str(mistake))
+    return drawn, missing
 
 
-def draw_figures(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> dict[str, Figure]:
-    """The figures by the names of their files; at least one episode is recorded."""
+def figures(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> dict[str, Callable[[], Figure]]:
+    """What makes each figure, by the names of their files; at least one episode is recorded."""
     variants = {variant.name: frame[frame["variant"] == variant.name] for variant in scenario.variants}
     frames = {name: episodes for name, episodes in variants.items() if len(episodes)}
     played = {label: look for label, look in looks_of(scenario).items() if (frame["agent"] == label).any()}
-    with rc_context(STYLE):
-        return {
-            "success.png": success(table, played),
-            "path_ratio.png": path_ratio(table, played, reference_name(scenario)),
-            "success_by_steps.png": success_against_steps(frames, played),
-            "success_by_seconds.png": success_against_seconds(frames, played),
-            "by_distance.png": against_distance(frames, played, scenario),
-        }
+    return {
+        "success.png": partial(success, table, played),
+        "path_ratio.png": partial(path_ratio, table, played, reference_name(scenario)),
+        "success_by_steps.png": partial(success_against_steps, frames, played),
+        "success_by_seconds.png": partial(success_against_seconds, frames, played),
+        "by_distance.png": partial(against_distance, frames, played, scenario),
+    }
 
 
 def success(table: pd.DataFrame, looks: Looks) -> Figure:
@@ -98,6 +104,7 @@ def success_against_seconds(frames: Frames, looks: Looks) -> Figure:
         curves = {agent: success_by_seconds(cell) for agent, cell in _cells(episodes, looks)}
         spent = np.concatenate([[], *(curve.budget for curve in curves.values())])
         axes.set_xscale("log")
+        magnitudes(axes.xaxis)
         _staircases(axes, curves, looks, *_around(spent))
     return figure
 
@@ -130,7 +137,7 @@ def _point_beyond(axes: Axes) -> None:
 
 
 def _side_by_side(axes: Axes, variants: Sequence[str]) -> None:
-    axes.set_xticks(range(len(variants)), variants)
+    axes.set_xticks(range(len(variants)), [folded(variant, ACROSS) for variant in variants])
     axes.set_xlim(-0.5, len(variants) - 0.5)
     axes.grid(visible=False, axis="x")
     for border in range(1, len(variants)):

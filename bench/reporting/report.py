@@ -7,12 +7,14 @@ from typing import Any
 import pandas as pd
 from rich.console import Console
 
+from fogbench.bench.playing.store import write
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.metrics import METRICS
 from fogbench.bench.reporting.pairs import COMPARISONS, pair
 from fogbench.bench.reporting.sections import headline, page, sections
 from fogbench.bench.reporting.statistics import holm
 from fogbench.bench.reporting.tables import print_table
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Outcome
 
 READS = (
@@ -42,8 +44,8 @@ def summary(frame: pd.DataFrame, scenario: Scenario) -> pd.DataFrame:
     return table
 
 
-def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any], folder: Path) -> pd.DataFrame:
-    """Write `summary.csv`, `summary.md` and the plots, `*.png`, into `folder`.
+def write_tables(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Write `summary.csv` and `summary.md` into `folder`.
 
     Args:
         frame: as for `summary`.
@@ -53,15 +55,41 @@ def write_report(frame: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any]
 
     Returns:
         The summary.
-    """
-    from fogbench.bench.reporting.plots import draw  # noqa: PLC0415  it imports matplotlib, which the tables do not need
 
+    Raises:
+        StoreError: it cannot be written.
+    """
     table = summary(frame, scenario)
     folder.mkdir(parents=True, exist_ok=True)
-    plots = draw(frame, table, scenario, folder)
-    table.to_csv(folder / "summary.csv", index=False, lineterminator="\n")
-    (folder / "summary.md").write_text(page(frame, table, scenario, run, plots), "utf-8")
+    write(folder / "summary.csv", table.to_csv(index=False, lineterminator="\n").encode())
+    write(folder / "summary.md", page(frame, table, scenario, run, ()).encode())
     return table
+
+
+def write_plots(
+    frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, run: Mapping[str, Any], folder: Path
+) -> list[str]:
+    """Write the plots, `*.png`, into `folder`, and the page again, with those that could be drawn.
+
+    Args:
+        frame: as for `summary`.
+        table: its summary.
+        scenario: what was measured.
+        run: the content of `run.json`.
+        folder: where the tables are.
+
+    Returns:
+        A line on each plot that could not be drawn; nothing else is lost with it.
+    """
+    missing: list[str] = []
+    try:
+        from fogbench.bench.reporting.plots import draw  # noqa: PLC0415  it loads Matplotlib, which tables do not need
+
+        drawn, missing = draw(frame, table, scenario, folder)
+        write(folder / "summary.md", page(frame, table, scenario, run, drawn).encode())
+    except Mistake as mistake:
+        missing.append(str(mistake))
+    return missing
 
 
 def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, console: Console) -> None:

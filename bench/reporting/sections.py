@@ -8,6 +8,7 @@ import pandas as pd
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.metrics import METRICS, Metric
 from fogbench.bench.reporting.pairs import COMPARISONS
+from fogbench.bench.reporting.plain import escaped
 from fogbench.bench.reporting.statistics import Estimate
 from fogbench.bench.reporting.tables import NOTHING, Lines, heading, markdown, written
 from fogbench.bench.reporting.trainings import trainings
@@ -23,6 +24,9 @@ READING = (
     "Brackets are 95 % intervals: Wilson's for shares, Bonett and Price's for paired differences, the bootstrap over "
     f"episodes for means and ratios. {NOTHING} stands where nothing was measured or published."
 )
+
+NAMED = 5
+"""Episodes that are named of those that ended alike."""
 
 LONGEST = 200
 """Characters of a detail or a reason at most."""
@@ -64,13 +68,18 @@ def comparisons(table: pd.DataFrame, scenario: Scenario) -> Lines:
 
 
 def failures(frame: pd.DataFrame) -> Lines:
-    """How often each agent failed in which way, with the first thing that was said about it."""
+    """How often each agent failed in which way, in which episodes, and the first thing that was said about it, if any.
+
+    `fogbench replay --episode` shows one.
+    """
     failed = frame[frame["outcome"] != Outcome.REACHED.name]
-    groups = failed.groupby(["variant", "agent", "outcome"], sort=False)["detail"]
-    rows = [
-        [*map(str, place), str(len(details)), _brief(next(filter(None, details), NOTHING))] for place, details in groups
-    ]
-    return Lines(["variant", "agent", "outcome", "episodes", "first detail"], rows)
+    headings, rows = ["variant", "agent", "outcome", "count", "episodes", "first detail"], list[list[str]]()
+    for place, group in failed.groupby(["variant", "agent", "outcome"], sort=False):
+        numbers = [*map(str, sorted(group["episode"])[:NAMED]), *(["…"] if len(group) > NAMED else [])]
+        detail = _brief(next(filter(None, group["detail"]), NOTHING))
+        rows.append([*map(str, place), str(len(group)), ", ".join(numbers), detail])
+    told = failed["detail"].any()
+    return Lines(headings, rows) if told else Lines(headings[:-1], [row[:-1] for row in rows])
 
 
 def skipped(scenario: Scenario) -> Lines:
@@ -88,11 +97,11 @@ def skipped(scenario: Scenario) -> Lines:
 def columns(scenario: Scenario) -> Lines:
     """What is asked, in which unit, and of which episodes."""
     rows = [
-        [metric.heading, f"`{metric.name}`", metric.unit or NOTHING, metric.better or NOTHING, metric.over.words,
+        [metric.heading, metric.name, metric.unit or NOTHING, metric.better or NOTHING, metric.over.words,
          metric.about]
         for metric in asked(scenario).values()
     ]  # fmt: skip
-    return Lines(["column", "in `summary.csv`", "unit", "better", "over", "what it says"], rows)
+    return Lines(["column", "in summary.csv", "unit", "better", "over", "what it says"], rows)
 
 
 class Section(NamedTuple):
@@ -122,15 +131,15 @@ def page(
     """The Markdown of `summary.md`; `plots` are the names of its pictures."""
     source = scenario.published.get("source")
     parts = [
-        f"# {scenario.name}\n",
-        f"{scenario.about}\n",
+        f"# {escaped(scenario.name)}\n",
+        f"{escaped(scenario.about)}\n",
         markdown(headline(table, scenario)),
-        READING + (f" Published: {source}.\n" if source else "\n"),
+        READING + (f" Published: {escaped(source)}.\n" if source else "\n"),
         *(f"![{plot.removesuffix('.png').replace('_', ' ')}]({plot})\n" for plot in plots),
     ]
     for section in sections(frame, table, scenario, frame):
         parts += [f"## {section.title}\n", markdown(section.lines)]
-    parts += ["## How it was measured\n", "".join(f"- {fact}\n" for fact in _facts(run))]
+    parts += ["## How it was measured\n", "".join(f"- {escaped(fact)}\n" for fact in _facts(run))]
     parts += ["## What the columns say\n", markdown(columns(scenario))]
     return "\n".join(parts)
 

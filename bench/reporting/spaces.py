@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 from scipy.spatial.distance import cdist
 
-from fogbench.bench.reporting.panels import STYLE, legend, look_of
+from fogbench.bench.reporting.canvas import Figure
+from fogbench.bench.reporting.panels import legend, look_of
+from fogbench.bench.reporting.plain import folded
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Array
 
@@ -79,17 +79,17 @@ def spaces(planes: Iterable[tuple[str, Array, float]], decisions: Decisions, tit
     Args:
         planes: name, points [n, 2] and separability of each.
         decisions: what the points are.
-        title: one line.
+        title: one line or more.
     """
     planes, shown = list(planes), np.unique(decisions.moves).tolist()
     looks = {decisions.names[move]: look_of(move)._replace(linestyle="") for move in shown}
-    with rc_context(STYLE):
-        figure = Figure(figsize=(3.2 * len(planes), 4.0), layout="constrained")
-        for axes, (name, points, separable) in zip(figure.subplots(1, len(planes)), planes, strict=True):
-            for move, look in zip(shown, looks.values(), strict=True):
-                x, y = points[decisions.moves == move].T
-                axes.scatter(x, y, s=9, color=look.color, marker=look.marker, alpha=0.6, linewidths=0)
-            axes.set(xticks=[], yticks=[], title=f"{name}: {100 * separable:.1f} %")
-        legend(figure, looks, lines=False)
-        figure.supxlabel(title, fontsize="medium")
+    figure = Figure(figsize=(3.2 * len(planes), 4.0), layout="constrained")
+    panels = figure.subplots(1, len(planes), squeeze=False).flat
+    for axes, (name, points, separable) in zip(panels, planes, strict=True):
+        for move, look in zip(shown, looks.values(), strict=True):
+            x, y = points[decisions.moves == move].T
+            axes.scatter(x, y, s=9, color=look.color, marker=look.marker, alpha=0.6, linewidths=0)
+        axes.set(xticks=[], yticks=[], title=f"{name}: {100 * separable:.1f} %")
+    legend(figure, looks, lines=False)
+    figure.supxlabel("\n".join(folded(line, 50 * len(planes)) for line in title.split("\n")), fontsize="medium")
     return figure

@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
+from rich.cells import cell_len
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table as RichTable
 from rich.text import Text
 
 from fogbench.bench.reporting.metrics import Metric
+from fogbench.bench.reporting.plain import escaped, plain
 from fogbench.bench.reporting.statistics import Estimate
 
 NOTHING = "—"
@@ -27,6 +29,8 @@ SCALES = {
 WIDTH = 120
 """Columns of text that a table may take even where the terminal has fewer, or a pipe pretends to have 80."""
 
+WIDEST = 60
+"""Columns of text that a column takes for a long label; in a terminal the rest stands below."""
 
 LEAST, MOST = 20, 10_000
 """Columns of text below which the last column of a table does not give way, and more than any table needs."""
@@ -70,10 +74,10 @@ def scaled(value: float, unit: str, digits: int = 3) -> str:
 
 def markdown(lines: Lines) -> str:
     """The table in Markdown, its columns aligned for those who read it as text."""
-    rows = [[text.replace("|", "\\|") for text in row] for row in (lines.headings, *lines.rows)]
-    widths = [max(3, *map(len, column)) for column in zip(*rows, strict=True)]
+    rows = [list(map(escaped, row)) for row in (lines.headings, *lines.rows)]
+    widths = [min(WIDEST, max(3, *map(cell_len, column))) for column in zip(*rows, strict=True)]
     rows.insert(1, ["-" * width for width in widths])
-    padded = [[text.ljust(width) for text, width in zip(row, widths, strict=True)] for row in rows]
+    padded = [[text + " " * (width - cell_len(text)) for text, width in zip(row, widths, strict=True)] for row in rows]
     return "".join(f"| {' | '.join(row)} |\n" for row in padded)
 
 
@@ -91,14 +95,18 @@ def print_table(title: str, lines: Lines, console: Console) -> None:
 def terminal(title: str, lines: Lines) -> RichTable:
     """The table for a terminal.
 
-    A gap stands where the first column changes. If space is short, the last column gives way.
+    A gap stands where the first column changes. If space is short, the last column gives way, and so do long labels.
     """
+    rows = [list(map(plain, row)) for row in lines.rows]
     look: dict[str, Any] = {"title_justify": "left", "title_style": "bold", "box": SIMPLE_HEAD, "show_edge": False}
     table = RichTable(title=f"\n{title}", padding=0, **look)
     for k, text in enumerate(lines.headings):
-        widest, last = max((len(row[k]) for row in lines.rows), default=0), k == len(lines.headings) - 1
-        least = min(widest, LEAST) if last else widest
-        table.add_column(Text(text.replace(" ", "\n")), no_wrap=not last, overflow="fold", min_width=least)
-    for row, after in zip_longest(lines.rows, lines.rows[1:]):
+        widest, last = max((cell_len(row[k]) for row in rows), default=0), k == len(lines.headings) - 1
+        least, most = (LEAST, None) if last else (WIDEST, WIDEST)
+        limits: dict[str, Any] = {"min_width": min(widest, least), "max_width": most}
+        table.add_column(
+            Text(plain(text).replace(" ", "\n")), no_wrap=not last and widest <= WIDEST, overflow="fold", **limits
+        )
+    for row, after in zip_longest(rows, rows[1:]):
         table.add_row(*map(Text, row), end_section=after is not None and after[0] != row[0])
     return table

@@ -111,6 +111,30 @@ def test_results_of_another_machine_stay(fogbench: Fogbench, monkeypatch: pytest
     assert Path("results/small/summary.csv").read_text().count("success,100.0,") == 2
 
 
+def test_tables_of_outdated_results_stay(fogbench: Fogbench) -> None:
+    """Nothing that is recorded counts any more: one line says so, in place of a page of dashes."""
+    write("small")
+    fogbench("run", "small.yaml")
+    page = Path("results/small/summary.md")
+    before = page.read_bytes()
+    Path("small.yaml").write_text(Path("small.yaml").read_text() + "seed: 5\n")
+    code, out, err = fogbench("report", "small.yaml")
+    assert (code, err, page.read_bytes()) == (0, "", before)
+    assert out.splitlines()[-1] == (
+        "results/small: none of 2 recorded episodes counts any more: settings, sources or packages have changed. "
+        "The tables stay as they are; `fogbench run` plays the episodes again."
+    )
+
+
+def test_labels_of_alike_words_have_files_of_their_own(fogbench: Fogbench) -> None:
+    """Two that differ by punctuation, and one that is nothing else."""
+    write("small", "[astar, memoryless: {label: a b}, frontier: {label: a-b}, random_walk: {label: '?'}]")
+    fogbench("run", "small.yaml")
+    for label, name in (("a b", "a-b"), ("a-b", "a-b-2"), ("?", "unnamed")):
+        code, out, _ = fogbench("report", "small.yaml", "--against", label)
+        assert (code, f"against-{name}.md" in out) == (0, True)
+
+
 def test_a_crash_is_told_and_stays_in_the_exit_code(fogbench: Fogbench) -> None:
     """A later run that plays nothing does not forget it."""
     write("crash", '[astar, "./mine.py:Broken"]')

@@ -9,13 +9,14 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reading.variant import Entry
+from fogbench.bench.reporting import plots
+from fogbench.bench.reporting.canvas import Figure, ours
 from fogbench.bench.reporting.panels import Look, looks_of, panels_of
-from fogbench.bench.reporting.plots import draw, draw_figures
+from fogbench.bench.reporting.plots import draw
 from fogbench.bench.reporting.report import summary
 
 Recorded = Callable[..., pd.DataFrame]
@@ -43,7 +44,8 @@ def frame(recorded: Recorded) -> pd.DataFrame:
 
 def figures(frame: pd.DataFrame, scenario: Scenario) -> dict[str, Figure]:
     """All figures, not written."""
-    return draw_figures(frame, summary(frame, scenario), scenario)
+    with ours():
+        return {name: make() for name, make in plots.figures(frame, summary(frame, scenario), scenario).items()}
 
 
 def curve(axes: Any, scenario: Scenario, agent: str) -> tuple[list[float], list[float]]:
@@ -66,7 +68,7 @@ def test_plots_are_pictures_whatever_was_recorded(
 ) -> None:
     """Two variants, one variant, one success, and one failure: five PNGs with something on them."""
     frame, scenario = frame[chosen], make()
-    assert draw(frame, summary(frame, scenario), scenario, tmp_path) == list(PANELS)
+    assert draw(frame, summary(frame, scenario), scenario, tmp_path) == (list(PANELS), [])
     for name in PANELS:
         with Image.open(tmp_path / name) as picture:
             assert picture.format == "PNG"
@@ -155,17 +157,18 @@ def test_trainings_of_one_network_look_alike(recorded: Recorded, make: Make) -> 
     assert len({looks[label] for label in labels}) == 1
     assert looks["astar"] != looks["Net"]
     frame = recorded({}, *({"agent": label} for label in labels)).assign(episode=0)
-    for figure in draw_figures(frame, summary(frame, scenario), scenario).values():
+    for figure in figures(frame, scenario).values():
         (legend,) = figure.legends
         assert [text.get_text() for text in legend.texts] == ["Net", "astar"]
 
 
 def test_a_legend_is_inside_its_figure() -> None:
     """However many agents there are and however long their labels."""
-    for count, length in ((2, 5), (17, 12), (9, 40)):
+    for count, length in ((2, 5), (17, 12), (9, 40), (3, 200)):
         looks = {f"{k}".rjust(length, "x"): Look("#000000", "o", "-") for k in range(count)}
-        figure, _ = panels_of(["a"], looks, "x", "y")
-        figure.draw_without_rendering()
+        with ours():
+            figure, _ = panels_of(["a"], looks, "x", "y")
+            figure.draw_without_rendering()
         (drawn,) = figure.legends
         assert drawn.get_window_extent().x0 >= 0
         assert drawn.get_window_extent().x1 <= figure.bbox.x1
@@ -188,3 +191,71 @@ def test_one_bin_has_its_interval(frame: pd.DataFrame, make: Make) -> None:
     axes = figures(frame, make())["by_distance.png"].axes[0]
     ((_, low), (_, high)) = axes.collections[0].get_segments()[0]
     assert (low, high) == pytest.approx((61, 100), abs=0.1)
+
+
+LABELS = [
+    "Ba$$in",
+    "$\\floor{x}$",
+    "_hidden",
+    "a^b_c\\",
+    "\x1b[31mred\u202e",
+    "\u00e9\u0301\U0001f680\u4e2d",
+    "x" * 200,
+]
+
+
+def test_no_label_is_read_as_markup(recorded: Recorded, make: Make, tmp_path: Path) -> None:
+    """Neither TeX nor an underscore nor what a font lacks: all plots come out, and their legends show the labels."""
+    scenario = make(agents=[{"astar": {"label": label}} for label in LABELS], reference=LABELS[0], budget={"steps": 9},
+                    variants={"$v_{": {}, "_" * 200: {}})  # fmt: skip
+    frame = recorded(*({"agent": label, "variant": v.name} for v in scenario.variants for label in LABELS))
+    assert draw(frame, summary(frame, scenario), scenario, tmp_path) == (list(PANELS), [])
+    for figure in figures(frame, scenario).values():
+        shown = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert shown[:5] == [*LABELS[:4], "\\x1b[31mred\\u202e"]
+        assert not any(text.get_parse_math() for text in figure.legends[0].get_texts())
+        assert max(figure.get_size_inches()) < 30
+    with Image.open(tmp_path / "by_distance.png") as picture:
+        assert max(picture.size) < 6000
+
+
+def test_one_plot_that_fails_takes_no_other_with_it(
+    frame: pd.DataFrame, make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line names it and says why."""
+
+    def broken(*_: object) -> Figure:
+        raise ZeroDivisionError("no\nfigure")
+
+    monkeypatch.setattr(plots, "success", broken)
+    (tmp_path / "by_distance.png").mkdir()
+    drawn, (first, second) = draw(frame, summary(frame, make()), make(), tmp_path)
+    assert drawn == list(PANELS)[1:-1]
+    assert first == (
+        f"{tmp_path}/success.png: got ZeroDivisionError: no; expected a plot that can be drawn and written."
+    )
+    assert second.startswith(f"{tmp_path}/by_distance.png: got IsADirectoryError: ")
+
+
+def test_settings_of_others_change_no_plot(
+    frame: pd.DataFrame, make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever a plug-in does to Matplotlib in the same process, the bytes are the same."""
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        draw(frame, summary(frame, make()), make(), tmp_path / name)
+        for key, value in {"text.usetex": True, "font.size": 30, "savefig.format": "svg", "axes.grid": False}.items():
+            monkeypatch.setitem(mpl.rcParams, key, value)
+    for name in PANELS:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_logarithmic_axes_have_plain_numbers(frame: pd.DataFrame, make: Make) -> None:
+    """Powers of ten would need the mark-up that no label may have."""
+    frame["decision_seconds"] = [(10.0 ** (k % 6 - 3),) for k in range(len(frame))]
+    figure = figures(frame, make())["success_by_seconds.png"]
+    with ours():
+        figure.draw_without_rendering()
+    ticks = [text.get_text() for text in figure.axes[0].get_xticklabels()]
+    assert "0.01" in ticks
+    assert not any("$" in text for text in ticks)

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from fogbench.bench.playing.episode import SCHEMA
 from fogbench.bench.reading.scenario import Scenario
-from fogbench.bench.reporting.report import COLUMNS, READS, print_tables, summary, write_report
+from fogbench.bench.reporting.report import COLUMNS, READS, print_tables, summary, write_plots, write_tables
 from fogbench.bench.reporting.sections import asked, columns, failures
 
 Recorded = Callable[..., pd.DataFrame]
@@ -92,16 +92,23 @@ def test_p_values_are_adjusted_over_the_whole_scenario(recorded: Recorded, make:
 
 
 def test_the_page_says_all_of_it(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
-    """The exact Markdown of a small report, up to the explanation of the columns."""
-    write_report(frame, scenario, RUN, tmp_path)
+    """The exact Markdown of a small report, up to the explanation of the columns; at first without the plots."""
+    table = write_tables(frame, scenario, RUN, tmp_path)
+    without = (tmp_path / "summary.md").read_text("utf-8")
+    assert write_plots(frame, table, scenario, RUN, tmp_path) == []
     text, _ = (tmp_path / "summary.md").read_text("utf-8").split("## What the columns say")
     assert text == PAGE.read_text("utf-8")
+    pictures = [line for line in text.splitlines() if line.startswith("![")]
+    assert len(pictures) == 5
+    for picture in pictures:
+        text = text.replace(picture + "\n\n", "")
+    assert without.startswith(text)
 
 
 def test_the_page_explains_every_metric(scenario: Scenario) -> None:
     """One row each: its column, its name in the CSV, unit, direction, episodes and meaning, none of them empty."""
     rows = columns(scenario).rows
-    assert [row[1] for row in rows] == [f"`{name}`" for name in asked(scenario)]
+    assert [row[1] for row in rows] == list(asked(scenario))
     assert all(map(all, rows))
 
 
@@ -118,14 +125,14 @@ def test_words_come_from_the_kind(scenario: Scenario) -> None:
 def test_writing_twice_gives_the_same_bytes(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
     """The bootstrap is seeded and nothing depends on the day: CSV and Markdown repeat."""
     for folder in ("a", "b"):
-        write_report(frame, scenario, RUN, tmp_path / folder)
+        write_tables(frame, scenario, RUN, tmp_path / folder)
     for name in ("summary.csv", "summary.md"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
 def test_the_csv_holds_the_summary(frame: pd.DataFrame, scenario: Scenario, tmp_path: Path) -> None:
     """Reading it gives back every number exactly."""
-    table = write_report(frame, scenario, RUN, tmp_path)
+    table = write_tables(frame, scenario, RUN, tmp_path)
     pd.testing.assert_frame_equal(
         pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values={"value": "", "low": "", "high": ""}),
         table, check_dtype=False, rtol=0, atol=0,
@@ -135,7 +142,9 @@ def test_the_csv_holds_the_summary(frame: pd.DataFrame, scenario: Scenario, tmp_
 def test_nothing_recorded_yet_is_a_report_too(scenario: Scenario, tmp_path: Path) -> None:
     """Every agent has its row of dashes, the CSV its header, and there is no plot."""
     frame = SCHEMA.empty_table().select(list(READS)).to_pandas()
-    write_report(frame, scenario, {"seeds": {"short": 0}, "sessions": []}, tmp_path)
+    run = {"seeds": {"short": 0}, "sessions": []}
+    table = write_tables(frame, scenario, run, tmp_path)
+    assert write_plots(frame, table, scenario, run, tmp_path) == []
     assert (tmp_path / "summary.csv").read_text() == ",".join(COLUMNS) + "\n"
     assert "| short   | astar       | —   |" in (tmp_path / "summary.md").read_text("utf-8")
     assert list(tmp_path.glob("*.png")) == []
@@ -152,7 +161,7 @@ def test_the_terminal_shows_results_comparisons_and_who_did_not_play(
     assert "short memoryless 2 50.0 [9.5, 90.5] 12 1.500 1.500 0.250 2.5 ms 4 ms 2 KiB 0.500" in lines
     assert "short memoryless astar -50.0 [-100.0, 56.3] 0 1 0.500 0.500 1.500 1" in lines
     assert "long random_walk no legs" in lines
-    assert "short memoryless CRASHED 1 ValueError: a | b (act, line 3)" in lines
+    assert "short memoryless CRASHED 1 1 ValueError: a | b (act, line 3)" in lines
     assert max(map(len, console.file.getvalue().splitlines())) <= 120
 
 
@@ -160,6 +169,18 @@ def test_long_details_are_cut_to_a_line(recorded: Recorded) -> None:
     """A traceback of a thousand letters becomes one line of 200."""
     frame = recorded({"outcome": "CRASHED", "detail": "a\n  b " + "c" * 1000})
     assert failures(frame).rows[0][-1] == "a b " + "c" * 195 + "…"
+
+
+def test_failures_name_episodes_to_replay(recorded: Recorded) -> None:
+    """The first five of those that ended alike, by number; without a word of any agent there is no column for it."""
+    lost = {"outcome": "OUT_OF_STEPS"}
+    frame = recorded(*({"episode": k, **lost} for k in (40, 3, 17, 5, 4, 6)), {"episode": 9, "variant": "long", **lost})
+    assert failures(frame).headings == ["variant", "agent", "outcome", "count", "episodes"]
+    assert failures(frame).rows == [
+        ["short", "astar", "OUT_OF_STEPS", "6", "3, 4, 5, 6, 17, …"],
+        ["long", "astar", "OUT_OF_STEPS", "1", "9"],
+    ]
+    assert failures(frame[:0]).rows == []
 
 
 LARGE = """
@@ -171,7 +192,7 @@ import pandas as pd
 import pyarrow as pa
 
 from fogbench.bench.playing.episode import SCHEMA
-from fogbench.bench.reporting.report import READS, write_report
+from fogbench.bench.reporting.report import READS, write_plots, write_tables
 from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.variant import Entry
 
@@ -191,7 +212,8 @@ frame = pd.DataFrame({
     "decision_seconds": pd.Series(seconds, dtype=pd.ArrowDtype(kind)), "detail": "", "world_key": "w", **numbers,
 })[list(READS)]
 del seconds
-write_report(frame, scenario, {"seeds": {}, "sessions": []}, Path(__import__("sys").argv[1]))
+run, folder = {"seeds": {}, "sessions": []}, Path(__import__("sys").argv[1])
+write_plots(frame, write_tables(frame, scenario, run, folder), scenario, run, folder)
 print(int(re.search("VmHWM:\\s+([0-9]+)", Path("/proc/self/status").read_text())[1]) // 1024)
 """
 

@@ -4,6 +4,7 @@ from io import StringIO
 
 import numpy as np
 import pytest
+from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
@@ -99,3 +100,25 @@ def test_only_the_last_column_is_broken() -> None:
     print_table("T", Lines(["a", "b"], [["x", "long " * 100]]), console)
     text = console.file.getvalue()  # type: ignore[attr-defined]
     assert text.count("long") == 100
+
+
+def test_a_long_label_is_folded() -> None:
+    """It takes 60 columns, and all of it is there; wide letters count twice."""
+    console = Console(width=120, file=StringIO())
+    print_table("T", Lines(["agent", "n", "detail"], [["x" * 200, "3", "y"], ["\u4e2d" * 10, "4", "z"]]), console)
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert text.count("x") == 200
+    assert max(map(cell_len, text.splitlines())) <= 120
+    first, second = (line for line in text.splitlines() if " 3 " in line or " 4 " in line)
+    assert cell_len(first[: first.index("3")]) == cell_len(second[: second.index("4")])
+    rows = markdown(Lines(["agent", "n"], [["x" * 200, "3"], ["\u4e2d" * 10, "4"]])).splitlines()
+    assert [cell_len(row) for row in rows if "x" not in row] == [60 + 3 + 7] * 3
+
+
+def test_controls_do_not_reach_a_terminal() -> None:
+    """Neither in a label nor in a heading."""
+    console = Console(width=80, file=StringIO())
+    print_table("T", Lines(["a\x1b", "b"], [["\x1b[31m:smile:", "c\nd"]]), console)
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "\x1b" not in text
+    assert "\\x1b[31m:smile: c d" in text
