@@ -253,18 +253,23 @@ def _scenarios(names: list[str] | None) -> list[Path]:
 def main() -> None:
     """Run the command line; every mistake of a user ends in lines of text and exit code 2, never in a traceback."""
     from fogbench.bench.environment import set_environment
+    from fogbench.bench.terminal import printing
 
-    for line in set_environment():
-        typer.echo(line, err=True)
-    try:
+    if sys.flags.optimize > 1:
+        _document()
+    with printing(), blaming_hidden():
+        for line in set_environment():
+            typer.echo(line, err=True)
         for argument in sys.argv[1:]:
             encodable(argument)
-        with blaming_hidden():
-            app()
-    except Mistake as mistake:
-        typer.echo(str(mistake), err=True)
-        sys.exit(WRONG)
-    except OSError as error:
-        place = error.filename or "the disk"
-        typer.echo(f"{place}: got {error.strerror}; expected a place to read and write.", err=True)
-        sys.exit(WRONG)
+        app()
+
+
+def _document() -> None:
+    """Give the commands their texts where Python leaves docstrings out."""
+    import ast
+
+    tree = ast.parse(Path(__file__).read_text("utf-8"))
+    texts = {node.name: ast.get_docstring(node) for node in tree.body if isinstance(node, ast.FunctionDef)}
+    for command in app.registered_commands:
+        command.help = texts[getattr(command.callback, "__name__", "")]
