@@ -1,10 +1,6 @@
-"""Pixels of a replay, of the layers of its pictures: the truth beside the known map, view, path, agent and goal."""
-
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+"""Pixels of a moment, of the layers of its picture: the truth or the known map, view, path, agent and goal."""
 
 import numpy as np
-from matplotlib.figure import Figure
 from PIL import Image, ImageDraw
 
 from fogbench.worlds.picture import Cells, Dots, Layer, Lines, Picture, Squares
@@ -19,6 +15,27 @@ TINT = 0.4
 """Share of a colour that lies over cells which stay to be seen."""
 
 Colour = tuple[int, int, int]
+
+
+def key(picture: Picture) -> dict[str, Colour]:
+    """What each colour of a picture stands for: the readings of its cells or its lines, then its other layers."""
+    below = (*picture.truth, *picture.known)
+    readings = dict(zip(("unknown", "free", "blocked"), map(_colour, COLOURS), strict=True))
+    names = readings if any(isinstance(layer, Cells) for layer in below) else {}
+    if any(isinstance(layer, Lines | Dots) for layer in below):
+        names = {**names, "map": LINE}
+    view = VIEW if isinstance(picture.view, Lines | Dots) else _colour(tinted(COLOURS[1], VIEW, TINT))
+    return {**names, "view": view, "path": PATH, "agent": AGENT, "goal": GOAL}
+
+
+def tinted(pixels: Array, colour: Colour, share: float) -> Array:
+    """[..., 3] uint8: pixels with a share of a colour over them."""
+    return np.asarray((1 - share) * pixels + share * np.array(colour), np.uint8)
+
+
+def _colour(pixel: Array) -> Colour:
+    red, green, blue = pixel.tolist()
+    return red, green, blue
 
 
 def truth(picture: Picture) -> Array:
@@ -71,7 +88,7 @@ class Canvas:
     def _fill(self, row: int, column: int, reach: int, colour: Colour, share: float) -> None:
         top, left = (max(0, at - reach) * self.scale for at in (row, column))
         block = self.pixels[top : (row + reach + 1) * self.scale, left : (column + reach + 1) * self.scale]
-        block[:] = ((1 - share) * block + share * np.array(colour)).astype(np.uint8)
+        block[:] = tinted(block, colour, share)
 
     def _draw(self, layer: Lines | Dots, colour: Colour) -> None:
         image, width = Image.fromarray(self.pixels), max(1, SIDE // 120)
@@ -84,36 +101,3 @@ class Canvas:
                 row, column = points
                 draw.circle((column, row), 2 * width, colour)
         self.pixels = np.array(image)
-
-
-def strip(moments: Sequence[tuple[Array, Array, int]], title: str, out: Path) -> None:
-    """Draw moments side by side, the truth above the known map, as one PNG.
-
-    Args:
-        moments: picture of the truth, picture of the known map, step.
-        title: one line.
-        out: the file.
-    """
-    height, width = moments[0][0].shape[:2]
-    figure = Figure(figsize=(2.4 * len(moments), 0.6 + 4.8 * height / width), layout="constrained", dpi=110)
-    figure.suptitle(title, fontsize=10)
-    axes = figure.subplots(2, len(moments), squeeze=False)
-    for column, (above, below, step) in enumerate(moments):
-        for axis, picture, what in zip(axes[:, column], (above, below), ("truth", "known map"), strict=True):
-            axis.imshow(picture, interpolation="nearest")
-            axis.set(xticks=[], yticks=[], title=f"step {step}" if what == "truth" else "")
-            axis.set_ylabel(what if column == 0 else "")
-    figure.savefig(out)
-
-
-def film(pictures: Iterable[tuple[Array, Array, int]], out: Path) -> None:
-    """Draw every step as one GIF, the truth beside the known map."""
-    frames = [_frame(above, below) for above, below, _ in pictures]
-    frames[0].save(out, save_all=True, append_images=frames[1:], duration=80, loop=0)
-
-
-def _frame(left: Array, right: Array) -> Image.Image:
-    gap = np.full((len(left), 1, 3), 255, np.uint8)  # [H, 1, 3]
-    both = Image.fromarray(np.concatenate([left, gap, right], axis=1))  # [H, 2 * W + 1, 3]
-    scale = max(1, -(-SIDE // len(left)))
-    return both.resize((both.width * scale, both.height * scale), Image.Resampling.NEAREST).quantize(64)

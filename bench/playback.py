@@ -6,19 +6,18 @@ from pathlib import Path
 
 import numpy as np
 
-from fogbench.bench.drawing import film, known, strip, truth
+from fogbench.bench.drawing import Colour, key, known, truth
+from fogbench.bench.film import Frame, film, strip
 from fogbench.bench.playing.provenance import differences
 from fogbench.bench.playing.replay import End, Moment, retrace, verify
 from fogbench.bench.playing.selection import chosen_row, chosen_variant
 from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reporting.plain import plain
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Array, Outcome
+from fogbench.worlds.types import Outcome
 
 PANELS, FRAMES = 5, 300
 """Moments in a strip, and the most in a film."""
-
-Picture = tuple[Array, Array, int]
-"""The truth, the known map, the step."""
 
 
 def replay_recorded(
@@ -38,19 +37,19 @@ def replay_recorded(
     most = PANELS if kind == ".png" else FRAMES
     steps = {round(step) for step in np.linspace(0, row["steps"], min(most, row["steps"] + 1)).tolist()}
     try:
-        drawn, end = _pictures(retrace(variant, row), steps)
+        drawn, names, end = _pictures(retrace(variant, row), steps)
     except Exception as error:
         told = f"got {type(error).__name__}: {error}; expected a world that can be drawn"
         raise Mistake(f"{agent} in {variant.name}, episode {episode}: {told}.") from error
     verify(row, end)
     told = f"{agent} in {variant.name}, episode {episode}: {row['steps']} steps, optimum {row['shortest']:g}."
     if kind == ".png":
-        strip(drawn, told, out)
+        strip(drawn, names, told, out)
     else:
-        film(drawn, out)
+        film(drawn, names, out)
     checked = "It ends as recorded" if row["steps"] else "Nothing was recorded to verify"
     lines = f"{told} {Outcome[row['outcome']].value} {row['detail']}", f"{checked}. Drawn in {out}"
-    return "\n".join(filter(None, [*lines, differences(folder, scenario)]))
+    return "\n".join(filter(None, [*map(plain, lines), differences(folder, scenario)]))
 
 
 def _kind(out: Path) -> str:
@@ -62,16 +61,17 @@ def _kind(out: Path) -> str:
     return out.suffix.lower()
 
 
-def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[Picture], End]:
-    """The pictures of the chosen steps, and the end."""
-    drawn: list[Picture] = []
+def _pictures(moments: Generator[Moment, None, End], steps: set[int]) -> tuple[list[Frame], dict[str, Colour], End]:
+    """The pictures of the chosen steps, what their colours stand for, and the end."""
+    drawn, names = list[Frame](), dict[str, Colour]()
     step = 0
     while True:
         try:
             moment = next(moments)
         except StopIteration as stop:
-            return drawn, stop.value
+            return drawn, names, stop.value
         if step in steps:
             picture = moment.picture()
             drawn.append((truth(picture), known(picture), step))
+            names |= key(picture)
         step += 1

@@ -6,8 +6,12 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
+from fogbench.bench.drawing import key, known, truth
+from fogbench.bench.film import film
 from fogbench.bench.playback import replay_recorded
 from fogbench.bench.playing.keys import agent_key, world_key
 from fogbench.bench.playing.play import lost, play
@@ -15,6 +19,7 @@ from fogbench.bench.playing.provenance import noted, read_run
 from fogbench.bench.playing.recorder import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.picture import Cells, Dots, Lines, Picture, Squares
 from fogbench.worlds.types import Outcome
 
 Make = Callable[..., Scenario]
@@ -78,3 +83,31 @@ def test_an_episode_of_other_sources_is_told(played: Scenario, tmp_path: Path) -
         "--episode: got 2; expected one of the 2 that are recorded of astar in short. 1 recorded episodes of astar in "
         "short do not count any more: its settings, sources or packages have changed; `fogbench run` plays them again."
     )
+
+
+def test_a_key_names_what_is_drawn() -> None:
+    """Of cells their readings, of lines the map; and each layer over them by its name, in its colour."""
+    dot, cells = Dots(np.zeros((1, 2))), Cells(np.zeros((2, 2), np.uint8))
+    lines = Lines(np.zeros((1, 2, 2)))
+    grid = Picture((2, 2), (cells,), (cells,), Squares(np.zeros((1, 2), int)), *[Squares(np.zeros((1, 2), int))] * 3)
+    graph = Picture((2, 2), (lines,), (lines,), lines, lines, dot, dot)
+    assert list(key(grid)) == ["unknown", "free", "blocked", "view", "path", "agent", "goal"]
+    assert list(key(graph)) == ["map", "view", "path", "agent", "goal"]
+    for picture in (grid, graph):
+        colours = {
+            tuple(pixel) for pixel in (*truth(picture).reshape(-1, 3).tolist(), *known(picture).reshape(-1, 3).tolist())
+        }
+        assert key(picture)["agent"] in colours
+
+
+@pytest.mark.parametrize("wide", [3, 40])
+def test_a_film_has_its_key_below(wide: int, tmp_path: Path) -> None:
+    """Every colour of it is in the picture, however narrow the world is."""
+    map_ = np.full((40, wide, 3), 255, np.uint8)
+    names = {"path": (0, 114, 178), "agent": (213, 94, 0), "goal": (0, 158, 115)}
+    film([(map_, map_, 0), (map_, map_, 1)], names, tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as picture:
+        assert picture.height > 360
+        below = np.asarray(picture.convert("RGB"))[360:].reshape(-1, 3).astype(int)
+    for colour in names.values():
+        assert np.abs(below - colour).sum(1).min() < 30
