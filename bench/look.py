@@ -1,7 +1,7 @@
 """From recorded episodes of a network to figures of what goes on in it."""
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -20,6 +20,8 @@ from fogbench.bench.reading.scenario import Scenario, Variant
 from fogbench.bench.reading.tables import NETWORK
 from fogbench.bench.reading.variant import Entry
 from fogbench.bench.reporting.activations import activations, table
+from fogbench.bench.reporting.canvas import draw
+from fogbench.bench.reporting.plain import plain, stems
 from fogbench.bench.reporting.spaces import Decisions, embedded, spaces
 from fogbench.bench.reporting.tables import markdown
 from fogbench.planners import judge_of
@@ -33,6 +35,9 @@ Item = TypeVar("Item")
 
 EPISODES, DECISIONS = 100, 2000
 """The most that t-SNE is shown."""
+
+PLANNED = "planning module"
+"""The name of what a network makes of its image before it remembers anything."""
 
 LEAST = 10
 """Decisions that t-SNE needs."""
@@ -53,7 +58,8 @@ def look_inside(scenario: Scenario, variant_name: str | None, agent: str, episod
     entry = _network(variant, agent)
     row = chosen_row(scenario, variant, agent, episode, folder)
     rows = chosen_rows(scenario, variant, agent, folder).head(EPISODES)
-    end = "-".join(re.findall(r"\w+", f"{variant.name} {agent}")) + ".png"
+    names = [f"{each.name} {one.label}" for each in scenario.variants for one in each.agents]
+    end = f"{stems(names)[f'{variant.name} {agent}']}.png"
     with threadpool_limits(1):  # as it was played
         figures = (
             _memory(variant, entry, row, folder / f"memory-{end}"),
@@ -100,7 +106,7 @@ def _called(action: Any) -> str:
 def _memory(variant: Variant, entry: Entry, row: Mapping[str, Any], out: Path) -> str:
     """Draw what is remembered along an episode."""
     watched = [(moment, seen.held) for moment, seen in _watch(variant, entry, row)]
-    told = f"{entry.label} in {variant.name}, episode {row['episode']}"
+    told = plain(f"{entry.label} in {variant.name}, episode {row['episode']}")
     if not watched:
         return f"{told}: no decision is recorded, so there is no figure of its memory."
     if not watched[0][1]:
@@ -108,31 +114,32 @@ def _memory(variant: Variant, entry: Entry, row: Mapping[str, Any], out: Path) -
     parts = {name: np.array([held[name] for _, held in watched]) for name in watched[0][1]}  # [T, any] each
     last = watched[-1][0]
     marks = variant.family.moments(last.world, last.path) if isinstance(variant.family, Marked) else {}
-    activations(parts, marks, told).savefig(out, dpi=200)
+    draw(partial(activations, parts, marks, told), out)
     return f"{told}. Drawn in {out}\n\n{markdown(table(parts, marks))}"
 
 
 def _spaces(variant: Variant, entry: Entry, rows: pd.DataFrame, out: Path) -> str:
     """Draw how the decisions of some episodes lie in what the network is shown, in its plans and in its scores."""
-    decisions = _decisions(variant, entry, rows)
+    teacher = judge_of(variant.kind)
+    if teacher is None:
+        return f"No t-SNE of {plain(variant.name)}: no judge says what is right in worlds of kind {variant.kind}."
+    decisions = _decisions(variant, entry, rows, teacher)
     told = f"{len(decisions.moves)} decisions with one optimal move, in {len(set(decisions.episodes))} episodes"
     if len(decisions.moves) < LEAST or len(set(decisions.episodes)) < 2:
         return f"No t-SNE of {told}; expected {LEAST} or more, in two or more: `fogbench run --episodes` records them."
     separable = decisions.separable()
     planes = [(name, embedded(points), separable[name]) for name, points in _tracked(decisions.spaces.items(), "t-SNE")]
-    told = f"{entry.label} in {variant.name}: {told}"
-    chance = f"the commonest move: {100 * decisions.commonest():.1f} %"
-    meaning = f"Over each: how often the nearest decision of another episode has the same optimal move ({chance})"
-    spaces(planes, decisions, f"{told}\n{meaning}").savefig(out, dpi=200)
+    told = plain(f"{entry.label} in {variant.name}: {told}")
+    chance = f"always the commonest move: {100 * decisions.commonest():.1f} %"
+    meaning = f"Panel title: nearest-neighbour accuracy ({chance})"
+    draw(partial(spaces, planes, decisions, f"{told}\n{meaning}"), out)
     found = ", ".join(f"{name} {100 * share:.1f} %" for name, share in separable.items())
-    return f"{told}. The nearest of another episode has the same optimal move: {found} ({chance}). Drawn in {out}"
+    lacking = "" if PLANNED in separable else f". The network has no `plan`: no panel of a {PLANNED}"
+    return f"{told}. Nearest-neighbour accuracy: {found} ({chance}). Drawn in {out}{lacking}"
 
 
-def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame) -> Decisions:
-    """Every decision, or every so many, that had one optimal move on the agent's own known map."""
-    teacher = judge_of(variant.kind)
-    if teacher is None:
-        raise Mistake(f"{variant.name}: got worlds of kind {variant.kind}, of which no judge says what is right.")
+def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame, teacher: Any) -> Decisions:
+    """Every decision, or every so many, that had one optimal move on the agent's own known map, by its judge."""
     every = max(1, -(-int(rows["steps"].sum()) // DECISIONS))
     kept, count = list[tuple["Glimpse", int, int]](), 0
     for row in _tracked(cast(list[dict[str, Any]], rows.to_dict("records")), "replaying"):
@@ -145,12 +152,12 @@ def _decisions(variant: Variant, entry: Entry, rows: pd.DataFrame) -> Decisions:
             count += 1
     shown = {
         "raw image": [seen.image for seen, _, _ in kept],
-        "planning module": [seen.planned for seen, _, _ in kept],
+        PLANNED: [seen.planned for seen, _, _ in kept if seen.planned is not None],
         "scores of the moves": [seen.scores for seen, _, _ in kept],
     }
     moves, episodes = (np.array([each[k] for each in kept], np.int64) for k in (1, 2))
     names = kept[0][0].outputs if kept else ()
-    return Decisions({name: np.array(points) for name, points in shown.items()}, moves, episodes, names)
+    return Decisions({name: np.array(points) for name, points in shown.items() if points}, moves, episodes, names)
 
 
 def _tracked(items: Collection[Item], doing: str) -> Iterable[Item]:

@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
 import torch
+from torch import Tensor
 
 from fogbench.learned.agent import PolicyAgent
 from fogbench.learned.dnc.dnc import DNCState
 from fogbench.learned.networks.memory import LSTMState
+from fogbench.learned.networks.network import Network
 from fogbench.worlds.types import Array, Observation
 
 
@@ -16,8 +19,8 @@ class Glimpse(NamedTuple):
 
     image: Array
     """[n], all numbers of what the network plans on."""
-    planned: Array
-    """[planned], what its planning module makes of that; see `Network.plan`."""
+    planned: Array | None
+    """[planned], what its planning module makes of that, see `Network.plan`; None of a network that does not tell."""
     scores: Array
     """[A], of the outputs."""
     held: Mapping[str, Array]
@@ -31,11 +34,15 @@ def glimpse(agent: PolicyAgent, observation: Observation) -> Glimpse:
     """Let an agent decide as it always does, and look."""
     inputs = agent.perceive(observation)
     with torch.inference_mode():
-        planned = agent.network.plan(inputs)
+        planned = agent.network.plan(inputs) if type(agent.network).plan is not Network.plan else None
     scores = agent.decide(inputs)
-    image, planned, scores = (tensor.flatten().cpu() for tensor in (inputs.image, planned, scores))
-    parts = image.numpy(), planned.numpy(), scores.numpy()
+    plan = None if planned is None else _numbers(planned)
+    parts = _numbers(inputs.image), plan, _numbers(scores)
     return Glimpse(*parts, held(agent.state), agent.action, agent.encoding.outputs)
+
+
+def _numbers(tensor: Tensor) -> Array:
+    return np.asarray(tensor.flatten().cpu().numpy())
 
 
 def held(state: Any) -> dict[str, Array]:

@@ -13,6 +13,8 @@ from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.recorder import recording
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reading.variant import Entry
+from fogbench.learned.networks.macn import MacnNetwork
+from fogbench.learned.networks.network import Network
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Move, Outcome
 
@@ -66,11 +68,24 @@ def test_figures_of_recorded_networks(
         assert memory == f"{agent} in long, episode 1: it remembers nothing, so there is no figure of its memory."
         assert not drawn[0].exists()
     assert spaces.startswith(f"{agent} in long: ")
-    assert "in 3 episodes. The nearest of another episode has the same optimal move: raw image " in spaces
+    assert "in 3 episodes. Nearest-neighbour accuracy: raw image " in spaces
     assert spaces.endswith(f" %). Drawn in {drawn[1]}")
     for file in drawn[not parts :]:
         with Image.open(file) as picture:
             assert min(picture.size) > 300
+
+
+def test_a_network_without_a_plan_is_drawn_without_it(
+    played: Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What it sees, its scores and its memory are there; a line says what is not."""
+    monkeypatch.setattr(MacnNetwork, "plan", Network.plan)
+    told = look_inside(played, "long", "macn", 1, tmp_path / "store")
+    assert "raw image " in told
+    assert "scores of the moves " in told
+    assert told.endswith(
+        f"Drawn in {tmp_path}/store/tsne-long-macn.png. The network has no `plan`: no panel of a planning module"
+    )
 
 
 def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_path: Path) -> None:
