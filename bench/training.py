@@ -10,7 +10,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from fogbench.bench.playing.provenance import circumstances
 from fogbench.bench.reading.recipe import read_recipe
 from fogbench.bench.reading.scenario import text_of
-from fogbench.bench.reporting.learning import write_curves
 from fogbench.bench.shipped import find_recipe
 from fogbench.learned.training.recipe import Recipe
 from fogbench.worlds.files import alone
@@ -65,8 +64,18 @@ def _train(course: "Course", console: Console) -> None:
             bars.update(bar, completed=news.batches, loss=f"loss {news.loss:.3f}")
             if news.trial:
                 _say(_told(news.trial), console)
-                write_curves(course.trials, course.folder)
+                _draw(course, console)
     _say(f"The best weights ({course.best[0]:.1f} % success over all variants) are in {course.weights}", console)
+
+
+def _draw(course: "Course", console: Console) -> None:
+    """Draw the curves; where they cannot be drawn, the training goes on."""
+    try:
+        from fogbench.bench.reporting.learning import write_curves  # noqa: PLC0415  it may not load
+
+        write_curves(course.trials, course.folder)
+    except Mistake as mistake:
+        _say(str(mistake), console)
 
 
 def _changed(recipe: Recipe, device: str, batches: int | None, seed: int | None) -> Recipe:
@@ -88,7 +97,7 @@ def _changed(recipe: Recipe, device: str, batches: int | None, seed: int | None)
 def _told(trial: "Trial") -> str:
     """A trial in one line."""
     reached = ", ".join(
-        f"{name}: {score['success']:.1f} % success, {score['test_error']:.1f} % wrong"
+        f"{name}: {score['success']:.1f} % success, test error {score['test_error']:.3f}"
         for name, score in trial["variants"].items()
     )
     return f"batch {trial['batch']}: loss {trial['loss']:.3f}; {reached}"

@@ -67,7 +67,7 @@ def refuse_unplayable(recipe: Recipe) -> None:
 
 
 def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
-    """How a network does in held-out episodes of each variant: success and test error [%]; nan where none is judged."""
+    """How a network does in held-out episodes of each variant: success [%] and test error; nan where none is judged."""
     scores = {}
     for name, worlds in recipe.held_out.items():
         drawn = [
@@ -79,7 +79,7 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
             rollout = roll_out(recipe.network, network, episodes, greedy)
         judged = int(rollout.judged.sum())
         wrong = int(rollout.wrong().sum()) / judged if judged else math.nan
-        scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": 100 * wrong}
+        scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": wrong}
     return scores
 
 

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from fogbench.bench.command import main
+from fogbench.bench.reporting.canvas import ours
 from fogbench.bench.reporting.learning import curves
 from fogbench.bench.shipped import RECIPES
 
@@ -59,6 +60,9 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     assert f"batch 4: loss {log[1]['loss']:.3f}; few: {log[1]['variants']['few']['success']:.1f} % success" in out
     with Image.open(folder / "learning.png") as picture:
         assert min(picture.size) > 100
+    share = log[1]["variants"]["few"]["test_error"]
+    assert share <= 1
+    assert f"% success, test error {share:.3f}" in out
     again = train("small.yaml")[1]
     assert "Resumes from batch 4." in again
     assert "few:" not in again
@@ -122,10 +126,13 @@ def test_curves_are_the_trials() -> None:
     """One panel for test error and one for success; one line for each variant, with a point for each trial."""
     trials = [
         {"batch": batch, "variants": {name: {"success": batch + k, "test_error": 50 - batch - k}
-         for k, name in enumerate("ab")}}
+         for k, name in enumerate(("a", "_$b$"))}}
         for batch in (10, 20)
     ]  # fmt: skip
-    errors, successes = curves(trials).axes
-    assert [line.get_label() for line in errors.lines] == ["a", "b"]
+    with ours():
+        figure = curves(trials)
+    errors, successes = figure.axes
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "_$b$"]
+    assert errors.get_ylabel() == "test error on held-out maps"
     assert [line.get_xydata().tolist() for line in errors.lines] == [[[10, 40], [20, 30]], [[10, 39], [20, 29]]]
     assert [line.get_xydata().tolist() for line in successes.lines] == [[[10, 10], [20, 20]], [[10, 11], [20, 21]]]
