@@ -47,10 +47,11 @@ def _strip(moments: Sequence[Frame], names: Mapping[str, Colour], title: str) ->
         for axis, picture, what in zip(axes[:, column], (above, below), ("truth", "known map"), strict=True):
             axis.imshow(picture, interpolation="nearest")
             axis.grid(visible=False)
+            axis.spines[:].set_visible(True)
             axis.set(xticks=[], yticks=[], title=f"step {step}" if what == "truth" else "")
             axis.set_ylabel(what if column == 0 else "")
-    patches = [Patch(facecolor=np.array(colour) / 255, edgecolor="#888888") for colour in names.values()]
-    named(figure, patches, list(names))
+    patches = [Patch(facecolor="#{:02x}{:02x}{:02x}".format(*colour), edgecolor="gray") for colour in names.values()]
+    named(figure, patches, list(names), "lower")
     return figure
 
 

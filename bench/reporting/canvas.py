@@ -86,7 +86,7 @@ STYLE: dict[Any, Any] = {
 @contextmanager
 def ours() -> Iterator[None]:
     """Matplotlib as we set it; afterwards it is as it was."""
-    usual = {name: value for name, value in mpl.rcParamsDefault.items() if name != "backend"}
+    usual: dict[Any, Any] = {name: value for name, value in mpl.rcParamsDefault.items() if name != "backend"}
     with _quiet(), mpl.rc_context({**usual, **STYLE}):
         yield
 

@@ -1,7 +1,7 @@
 """How plots look: one colour, mark and dash for each agent, a panel for each variant, one legend for them all."""
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.canvas import Artist, Axes, Axis, Figure, Line2D, LineStyleType, LogFormatter
@@ -74,10 +74,13 @@ def legend(figure: Figure, looks: Looks, *, lines: bool) -> None:
     named(figure, handles, list(looks), handlelength=3 if lines else 1)
 
 
-def named(figure: Figure, handles: Sequence[Artist], names: Sequence[str], **settings: float) -> None:
-    """A legend over the figure, which grows by it; no name is left out, whatever it begins with."""
+def named(
+    figure: Figure, handles: Sequence[Artist], names: Sequence[str], place: str = "upper", handlelength: float = 2
+) -> None:
+    """A legend outside of all panels, by which the figure grows; no name is left out, whatever it begins with."""
+    look: dict[str, Any] = {"loc": f"outside {place} center", "handlelength": handlelength}
     for columns in range(len(handles), 0, -1):
-        drawn = figure.legend(handles, ["x"] * len(names), loc="outside upper center", ncols=columns, **settings)
+        drawn = figure.legend(handles, ["x"] * len(names), ncols=columns, **look)
         for text, name in zip(drawn.get_texts(), names, strict=True):
             text.set_text(folded(name, BROAD))  # Matplotlib leaves out a label that begins with `_`
         if columns == 1 or drawn.get_window_extent().width <= figure.bbox.width:

@@ -29,7 +29,7 @@ SCALES = {
 WIDTH = 120
 """Columns of text that a table may take even where the terminal has fewer, or a pipe pretends to have 80."""
 
-WIDEST = 60
+WIDEST = 40
 """Columns of text that a column takes for a long label; in a terminal the rest stands below."""
 
 LEAST, MOST = 20, 10_000

@@ -67,7 +67,9 @@ class Odd(NamedTuple):
 HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "TMPDIR", "MPLCONFIGDIR")
 
 SURROUNDINGS = {
-    "notebook": Odd({"MPLBACKEND": "module://matplotlib_inline.backend_inline"}, commands=(*PLAYED, "train small.yaml")),
+    "notebook": Odd(
+        {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}, commands=(*PLAYED, "train small.yaml"),
+    ),
     "latin-1, settings of TeX": Odd(
         {"PYTHONIOENCODING": "latin-1", "COLUMNS": "20", "TERM": "dumb", "MATPLOTLIBRC": "rc", "TZ": "Odd/Place"},
         {"rc": b"text.usetex: True\nbackend: none\n"}, commands=PLAYED + TOLD,

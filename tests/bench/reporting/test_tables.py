@@ -103,7 +103,7 @@ def test_only_the_last_column_is_broken() -> None:
 
 
 def test_a_long_label_is_folded() -> None:
-    """It takes 60 columns, and all of it is there; wide letters count twice."""
+    """It takes 40 columns, and all of it is there; wide letters count twice."""
     console = Console(width=120, file=StringIO())
     print_table("T", Lines(["agent", "n", "detail"], [["x" * 200, "3", "y"], ["\u4e2d" * 10, "4", "z"]]), console)
     text = console.file.getvalue()  # type: ignore[attr-defined]
@@ -112,7 +112,7 @@ def test_a_long_label_is_folded() -> None:
     first, second = (line for line in text.splitlines() if " 3 " in line or " 4 " in line)
     assert cell_len(first[: first.index("3")]) == cell_len(second[: second.index("4")])
     rows = markdown(Lines(["agent", "n"], [["x" * 200, "3"], ["\u4e2d" * 10, "4"]])).splitlines()
-    assert [cell_len(row) for row in rows if "x" not in row] == [60 + 3 + 7] * 3
+    assert [cell_len(row) for row in rows if "x" not in row] == [40 + 3 + 7] * 3
 
 
 def test_controls_do_not_reach_a_terminal() -> None:
