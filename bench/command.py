@@ -11,7 +11,7 @@ refuse_hidden_libraries()
 with blaming_hidden():
     import typer
 
-    from fogbench.worlds.mistake import Mistake, encodable
+    from fogbench.worlds.mistake import encodable
 
 app = typer.Typer(
     name="fogbench",

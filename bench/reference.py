@@ -12,10 +12,10 @@ from rich.text import Text
 from fogbench.bench.reading.page import Page
 from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind, target
 from fogbench.bench.reading.recipe import RecipePage
-from fogbench.bench.reading.shapes import Schema, Shape, shape
 from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, LEARNER
 from fogbench.bench.reading.tables import Table as Names
 from fogbench.worlds.mistake import Mistake, Unavailable, unknown
+from fogbench.worlds.reading.shapes import Schema, Shape, shape
 from fogbench.worlds.settings import Settings
 
 PLACED = Names({}, (), ())

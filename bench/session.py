@@ -3,11 +3,12 @@
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 from rich.console import Console
 
-from fogbench.bench.check import read_sound, refuse_idle
+from fogbench.bench.check import notes, refuse_idle
 from fogbench.bench.playing import store
 from fogbench.bench.playing.keys import Versions
 from fogbench.bench.playing.pool import cpus
@@ -50,7 +51,7 @@ def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, re
     def play(scenario: Scenario) -> bool:
         return _run(scenario, workers or cpus(), results, console)
 
-    return any(each(read_sound(paths, episodes), console, play))
+    return any(each(read_all(paths, episodes), console, play))
 
 
 def report_all(paths: Sequence[Path], results: Path) -> None:
@@ -101,6 +102,8 @@ def _labels(scenario: Scenario) -> list[str]:
 def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> bool:
     folder = results / scenario.name
     refuse_idle(scenario)
+    for note in dict.fromkeys(chain.from_iterable(map(notes, scenario.variants))):
+        say(note, console)
     with Bars(scenario.name, console) as bars:
         played = run(scenario, folder, workers, bars.watch)
     say(_counts(played), console)

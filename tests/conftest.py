@@ -92,7 +92,7 @@ class Picture(Settings):
         """The picture."""
         return self.model_dump_json()
 
-    def tasks(self, conditions: GridConditions) -> int | None:
+    def tasks(self, conditions: GridConditions, most: int) -> int | None:
         """Any number."""
         return None
 

@@ -5,8 +5,10 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
 
+import numpy as np
 import pytest
 import torch
+from PIL import Image
 
 import fogbench
 from fogbench.bench.playing.play import play
@@ -104,6 +106,17 @@ def test_the_plain_network_plays_with_its_weights(tmp_path: Path) -> None:
     row = play(scenario, variant, variant.agents[0], 0, 1)
     assert (row.outcome != Outcome.CRASHED.name, row.peak_memory_bytes) == (True, 4 * 64)
     assert row.parameter_bytes == 4 * (3 * 64 * (27 + 64 + 2) + 4 * (64 + 1))
+
+
+def test_the_map_of_ones_own_plays(tmp_path: Path) -> None:
+    """The scenario of the page, on a floor of 10 x 16 pixels: metres and cells say the same task."""
+    (text,) = examples(EXTENDING, "yaml")
+    Image.new("L", (16, 10), 254).save(tmp_path / "hall.png")
+    numbers = "resolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
+    (tmp_path / "hall.yaml").write_text(f"image: hall.png\n{numbers}")
+    scenario = read_scenario(text, tmp_path / "mine.yaml")
+    worlds = [variant.family.sample(np.random.default_rng(0), 0, variant.conditions) for variant in scenario.variants]
+    assert [(world.start, world.task.goal) for world in worlds] == [((2, 2), (0, 7))] * 2
 
 
 def test_every_name_of_the_face_has_a_word() -> None:

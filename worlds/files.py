@@ -5,10 +5,16 @@ import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
+from time import time_ns
 
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import MapError
+
+SETTLED = 2_000_000_000
+"""Nanoseconds after which a change of a file cannot hide behind the one before."""
 
 
 def read(path: Path) -> bytes:
@@ -20,7 +26,46 @@ def read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise MapError(f"{path}: got {(error.strerror or str(error)).lower()}; expected a file to read") from None
+        raise _unreadable(path, error) from None
+
+
+def _unreadable(path: Path, error: OSError) -> MapError:
+    return MapError(f"{path}: got {(error.strerror or str(error)).lower()}; expected a file to read")
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """The contents of a file, known by their digest: equal ones are equal wherever they lie under one name."""
+
+    path: Path
+    sha256: str
+    contents: bytes = field(compare=False, repr=False)
+
+
+def load(path: Path) -> Loaded:
+    """A file with its digest, read once in a process as long as it stays as it is.
+
+    Raises:
+        MapError: it cannot be read.
+    """
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise _unreadable(path, error) from None
+    if abs(time_ns() - status.st_ctime_ns) < SETTLED:  # a second change might leave the time of the first
+        return _loaded(path)
+    return _kept(path, status.st_ctime_ns, status.st_size, status.st_ino)
+
+
+def _loaded(path: Path) -> Loaded:
+    contents = read(path)
+    return Loaded(path, sha256(contents), contents)
+
+
+@lru_cache(maxsize=32)
+def _kept(path: Path, *status: int) -> Loaded:
+    del status
+    return _loaded(path)
 
 
 def write(path: Path, contents: bytes | memoryview) -> None:

@@ -12,6 +12,11 @@ class Mistake(ValueError):
         super().__init__(text)
         self.near = near
 
+    def within(self, place: str) -> str:
+        """Its text with the place where it was met before each line, and a full stop behind it."""
+        lines = str(self).splitlines()
+        return "\n".join(f"{place}: {line}{'' if line.endswith(('.', '?')) else '.'}" for line in lines)
+
 
 class Unavailable(Exception):
     """A package that an agent needs is not installed, so it is skipped; the text says how to get it."""

@@ -190,7 +190,7 @@ class World(Protocol):
 class MapFamily(Protocol):
     """**Protocol:** the frozen settings of a family of maps; its fields are its block under `maps:`.
 
-    A family may also be `Marked`.
+    A family may also be `Marked`, and `Noted`.
     """
 
     kinds: ClassVar[tuple[str, ...]]
@@ -205,14 +205,14 @@ class MapFamily(Protocol):
             conditions: all that a scenario says but for maps and agents: sensor, rules, bounds of the task, budget.
 
         Raises:
-            MapError: no such world can be made; the text is one line.
+            MapError: no such world can be made.
         """
 
     def words(self) -> str:
         """All that fixes the maps, as text: the settings, and the digest of each file in place of its path."""
 
-    def tasks(self, conditions: Any) -> int | None:
-        """How many different episodes there are; None: any number."""
+    def tasks(self, conditions: Any, most: int) -> int | None:
+        """How many different episodes there are, counted no further than `most`; None: any number."""
 
     def extent(self) -> tuple[float, ...] | None:
         """The `Task.extent` of all its worlds; None: they differ, or a file has to be read to know."""
@@ -231,8 +231,20 @@ class Marked(Protocol):
         """
 
 
+@runtime_checkable
+class Noted(Protocol):
+    """**Protocol:** a map family that reads files, where they may mean something else than a user thinks."""
+
+    def notes(self) -> Sequence[str]:
+        """How they were read, in one line each; nothing where they say it themselves.
+
+        Raises:
+            MapError: a file is broken.
+        """
+
+
 class MapError(Mistake):
-    """A map or a task that cannot be made or read; its text is one line that names the file or the family."""
+    """A map or a task that cannot be made or read; its text is a line for each mistake, with the file or the family."""
 
 
 class Outcome(Enum):

@@ -82,7 +82,9 @@ def _answer(future: Future[Episode], job: Job) -> Episode | Job:
         loss = Outcome.HUNG, f"no answer after {job.hard_seconds:g} s, ended from outside"
     elif isinstance(error, ProcessExpired):
         loss = Outcome.CRASHED, _death(error.exitcode)
-    elif isinstance(error, MapError | ClerkError):
+    elif isinstance(error, MapError):
+        raise RunError(error.within(place))
+    elif isinstance(error, ClerkError):
         raise RunError(f"{place}: {error}.")
     else:
         raise RunError(f"{place}, {job.agent}: got {type(error).__name__}: {error}; expected no error but an agent's.")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+from fogbench.bench.playing.enough import refuse_unplayable
 from fogbench.bench.playing.keys import keys
 from fogbench.bench.playing.local import Job, RunError, play_here
 from fogbench.bench.playing.outdated import sort_rows
@@ -56,9 +57,9 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
         watch: told the count of each variant and agent before the first episode, then after each of theirs.
 
     Raises:
-        RunError: a world cannot be made, what plays was edited meanwhile, or the project has a bug.
+        RunError: what plays was edited meanwhile, or the project has a bug.
         StoreError: the store is broken, or cannot be written.
-        Mistake: another run records there.
+        Mistake: another run records there, or a world cannot be made of what is left to play.
     """
     covariates = dict.fromkeys(name for variant in scenario.variants for name in variant.conditions.covariates)
     with recording(folder, tuple(covariates)) as recorder:
@@ -73,6 +74,8 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
         workers = min(workers, sum(totals.values()) - summary.kept)
         if not workers:
             return summary
+        left = {variant for (variant, agent), total in totals.items() if counts[variant, agent] < total}
+        refuse_unplayable(variant for variant in scenario.variants if variant.name in left)
         with noted(folder, scenario, workers):
             for row in play_here(scenario, _jobs(scenario, done), workers):
                 if row is None:

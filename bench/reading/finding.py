@@ -6,12 +6,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
-from fogbench.bench.reading.blocks import Block, read_block
 from fogbench.bench.reading.page import blocks
 from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind, target
-from fogbench.bench.reading.positions import Fault, Value, join
 from fogbench.bench.reading.tables import FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable, near
+from fogbench.worlds.reading.blocks import Block, read_block
+from fogbench.worlds.reading.positions import Fault, Value, join
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import MapFamily
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from fogbench.bench.reading.page import NAME, is_name
-from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.worlds.mistake import near, one_of
+from fogbench.worlds.reading.positions import Fault, Value, merge
 
 ALONE = "all"
 """The name of the one variant of a file without variants."""

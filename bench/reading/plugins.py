@@ -10,10 +10,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
-from fogbench.bench.reading.blocks import raised
 from fogbench.bench.reading.tables import EXTRAS, KIND, PACKAGES, Table
 from fogbench.worlds import KINDS, Kind
 from fogbench.worlds.mistake import Unavailable, near, one_of
+from fogbench.worlds.reading.blocks import raised
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.streams import digest
 from fogbench.worlds.tables import registered

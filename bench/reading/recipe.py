@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
-from fogbench.bench.reading.document import parse
 from fogbench.bench.reading.finding import blocks_of, opened
 from fogbench.bench.reading.overlays import pages, settle
 from fogbench.bench.reading.page import FileName
 from fogbench.bench.reading.plugins import load
-from fogbench.bench.reading.positions import Fault, Value, merge
 from fogbench.bench.reading.scenario import wrong
 from fogbench.bench.reading.tables import LEARNER, NETWORK, Table
 from fogbench.bench.reading.worlds import Reading
 from fogbench.learned.training.recipe import Learner, Lesson, Recipe, Validation, Worlds
 from fogbench.worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.reading.document import parse
+from fogbench.worlds.reading.positions import Fault, Value, merge
 from fogbench.worlds.settings import Seed, Settings
 from fogbench.worlds.types import MapFamily
 

@@ -6,14 +6,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fogbench.bench.reading.document import parse
 from fogbench.bench.reading.finding import blocks_of
 from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.overlays import pages, settle, unknown_variants
 from fogbench.bench.reading.page import VARIED
-from fogbench.bench.reading.positions import Fault, Value
 from fogbench.bench.reading.variant import Entry, VariantReading
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.reading.document import parse
+from fogbench.worlds.reading.positions import Fault, Value, told
 from fogbench.worlds.types import MapFamily
 
 LARGEST = 1_000_000
@@ -116,8 +116,7 @@ def read_scenario(text: str, path: Path) -> Scenario:
 
 def wrong(faults: list[Fault], path: Path, rest: Scenario | None = None) -> ScenarioError:
     """All that is wrong with a file, in order and once."""
-    lines = [fault.text(str(path)) for fault in sorted(faults, key=lambda fault: (fault.line, fault.column))]
-    return ScenarioError(list(dict.fromkeys(lines)), rest)
+    return ScenarioError(told(faults, str(path)), rest)
 
 
 def _place(path: Path, page: Value) -> str:

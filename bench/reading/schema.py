@@ -10,9 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from fogbench.bench.reading.page import VARIED, Page, blocks
 from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind
-from fogbench.bench.reading.shapes import Lenient, Schema
 from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable
+from fogbench.worlds.reading.shapes import Lenient, Schema
 from fogbench.worlds.settings import Settings
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

@@ -3,9 +3,9 @@
 from collections.abc import Set as AbstractSet
 from pathlib import Path
 
-from fogbench.bench.reading.document import parse
 from fogbench.bench.reading.scenario import ScenarioError, text_of
 from fogbench.worlds.mistake import near
+from fogbench.worlds.reading.document import parse
 
 TELLING = ("maps", "agents", "budget", "episodes", "variants")
 """Keys of which every scenario has some."""

@@ -6,10 +6,10 @@ from typing import Any, cast
 
 from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.page import NAME, Page, is_name
-from fogbench.bench.reading.positions import Value
 from fogbench.bench.reading.tables import AGENT
 from fogbench.bench.reading.worlds import Reading
 from fogbench.worlds.mistake import near, one_of
+from fogbench.worlds.reading.positions import Value
 from fogbench.worlds.types import AgentSettings
 
 

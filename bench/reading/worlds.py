@@ -6,7 +6,7 @@ from typing import Generic, TypeVar, cast
 
 from fogbench.bench.reading.finding import Finder
 from fogbench.bench.reading.page import blocks, with_blocks
-from fogbench.bench.reading.positions import Value
+from fogbench.worlds.reading.positions import Value
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import MapFamily
 

@@ -13,9 +13,9 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from fogbench.bench.reading.blocks import raised
 from fogbench.worlds.files import write
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.reading.blocks import raised
 
 __all__ = [
     "STYLE", "Artist", "Axes", "Axis", "Figure", "FuncFormatter", "Line2D", "LineStyleType", "LogFormatter", "Patch",

@@ -56,13 +56,13 @@ def refuse_unplayable(recipe: Recipe) -> None:
     """
     for place, worlds, family in recipe.places():
         try:
-            listed = family.tasks(worlds.conditions)
+            listed = family.tasks(worlds.conditions, 1)
             world, _ = draw_world(worlds, family, "training", 0, 0)
             recipe.network.encoding().start(world.task)
         except Mistake as error:
-            raise Mistake(f"{recipe.name}: {place}: {error}.") from None
+            raise Mistake(error.within(f"{recipe.name}: {place}")) from None
         if listed is not None:
-            told = f"got a list of {listed} tasks; expected maps or tasks that are drawn afresh"
+            told = "got a list of tasks; expected maps or tasks that are drawn afresh"
             raise Mistake(f"{recipe.name}: {place}: {told}.")
 
 

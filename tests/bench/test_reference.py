@@ -9,10 +9,10 @@ import pytest
 import fogbench
 from fogbench import learned, planners, worlds
 from fogbench.bench.reading.page import Page
-from fogbench.bench.reading.shapes import shape
 from fogbench.bench.reference import Row, rows, show_settings
 from fogbench.worlds.conditions import BudgetSettings
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.reading.shapes import shape
 
 NAMES = [
     *worlds.FAMILIES,

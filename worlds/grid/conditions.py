@@ -7,7 +7,7 @@ from fogbench.worlds.grid.rules import GridRules, SquareView
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.cells import manhattan
 from fogbench.worlds.maps.covariates import COVARIATES
-from fogbench.worlds.maps.distances import FAR, distances
+from fogbench.worlds.maps.distances import FAR, distance
 from fogbench.worlds.maps.layout import Layout
 from fogbench.worlds.types import Array, Cell, Task
 
@@ -30,8 +30,8 @@ class GridConditions(Conditions):
         if start == goal or straight > most or layout.blocked[start] or layout.blocked[goal]:
             return None
         layout.blocked.setflags(write=False)
-        optimum = int(distances(layout.blocked, start, goal)[goal])
-        if optimum == FAR or not least <= optimum <= most:
+        optimum = int(distance(layout.blocked, start, goal, most))
+        if optimum == FAR or optimum < least:
             return None
         height, width = layout.blocked.shape
         task = Task("grid", goal, self.sensor, budget, (height, width))

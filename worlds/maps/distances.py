@@ -1,4 +1,4 @@
-"""Shortest 4-connected distances on a grid, by breadth-first search."""
+"""Shortest 4-connected distances on a grid: from one cell to all by breadth-first search, to one by A*."""
 
 import numpy as np
 
@@ -39,6 +39,55 @@ def distances(blocked: Array, source: Cell, target: Cell) -> Array:
                 queue[tail] = i * width + j
                 tail += 1
     return distance
+
+
+@kernel
+def distance(blocked: Array, source: Cell, target: Cell, most: int) -> int:
+    """The distance between two cells, if it is `most` at most; FAR where it is not, or there is no path.
+
+    A* with the Manhattan distance: as a step is 1 and changes that by 1, it leaves the estimate of a path through a
+    cell, or adds 2. So two stacks do for a queue: cells of this estimate, and of the next.
+
+    Args:
+        blocked: [H, W] bool.
+        source, target: two cells of it; their own values in `blocked` do not matter.
+        most: at least 0; no path that must be longer is looked at.
+    """
+    height, width = blocked.shape
+    seen = np.zeros((height, width), np.uint8)  # 1: waits in `later`; 2: came into `now`, and is settled
+    now, later = np.empty(height * width, np.int32), np.empty(height * width, np.int32)
+    now[0], waiting, coming = source[0] * width + source[1], 1, 0
+    seen[source] = 2
+    estimate = abs(source[0] - target[0]) + abs(source[1] - target[1])
+    while estimate <= most:
+        while waiting:
+            waiting -= 1
+            r, c = now[waiting] // width, now[waiting] % width
+            if r == target[0] and c == target[1]:
+                return estimate
+            for down, right in DELTAS:
+                i, j = r + down, c + right
+                if not (0 <= i < height and 0 <= j < width) or seen[i, j] == 2:
+                    continue
+                if blocked[i, j] and not (i == target[0] and j == target[1]):
+                    continue
+                if abs(i - target[0]) + abs(j - target[1]) < abs(r - target[0]) + abs(c - target[1]):
+                    seen[i, j] = 2
+                    now[waiting] = i * width + j
+                    waiting += 1
+                elif seen[i, j] == 0:
+                    seen[i, j] = 1
+                    later[coming] = i * width + j
+                    coming += 1
+        for k in range(coming):
+            if seen[later[k] // width, later[k] % width] == 1:
+                seen[later[k] // width, later[k] % width] = 2
+                now[waiting] = later[k]
+                waiting += 1
+        if waiting == 0:
+            return FAR
+        coming, estimate = 0, estimate + 2
+    return FAR
 
 
 @kernel

@@ -48,9 +48,9 @@ class CellMaps(Settings):
 
     kinds: ClassVar[tuple[str, ...]] = ("grid",)
 
-    def tasks(self, conditions: CellConditions) -> int | None:
+    def tasks(self, conditions: CellConditions, most: int) -> int | None:
         """Any number."""
-        del conditions
+        del conditions, most
         return None
 
     def extent(self) -> Cell | None:

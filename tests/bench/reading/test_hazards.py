@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from fogbench.bench.reading.document import DEEPEST
 from fogbench.bench.reading.recipe import read_recipe
 from fogbench.bench.reading.scenario import LARGEST, ScenarioError, read_scenario, text_of
 from fogbench.bench.shipped import RECIPES, folder
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.reading.document import DEEPEST
 
 PAGE = """
 name: page

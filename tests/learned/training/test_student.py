@@ -283,7 +283,7 @@ def test_listed_tasks_are_not_learned_from(recipe: Callable[..., Recipe], tmp_pa
     listed = Worlds(MovingAI(map=tmp_path / "x.map"), made.lessons[0].worlds.conditions)
     with pytest.raises(Mistake) as caught:
         refuse_unplayable(replace(made, held_out={"city": listed}))
-    expected = "got a list of 1 tasks; expected maps or tasks that are drawn afresh."
+    expected = "got a list of tasks; expected maps or tasks that are drawn afresh."
     assert str(caught.value) == f"small: city: {expected}"
 
 

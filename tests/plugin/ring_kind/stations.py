@@ -33,9 +33,9 @@ class Stations(Settings):
                 return found
         raise MapError(f"Stations: no task with {conditions.wanted()} was found on 100 rings")
 
-    def tasks(self, conditions: RingConditions) -> int | None:
+    def tasks(self, conditions: RingConditions, most: int) -> int | None:
         """Any number."""
-        del conditions
+        del conditions, most
         return None
 
     def extent(self) -> tuple[float, ...] | None:

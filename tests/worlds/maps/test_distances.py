@@ -1,12 +1,13 @@
-"""Breadth-first distances, held against networkx."""
+"""Distances, held against networkx."""
 
 import networkx as nx
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from fogbench.worlds.maps.distances import FAR, distances
+from fogbench.worlds.maps.distances import FAR, distance, distances
 from fogbench.worlds.types import Array
 
 maps = st.tuples(st.integers(1, 8), st.integers(1, 8)).flatmap(lambda shape: arrays(np.bool_, shape))
@@ -45,3 +46,24 @@ def test_an_early_stop_keeps_its_promise(blocked: Array, data: st.DataObject) ->
 def test_an_early_stop_does_stop() -> None:
     """In a corridor nothing beyond the target's next cell is looked at."""
     assert distances(np.zeros((1, 6), np.bool_), (0, 0), (0, 2)).tolist() == [[0, 1, 2, FAR, FAR, FAR]]
+
+
+@given(maps, st.data())
+def test_a_distance_is_that_of_networkx(blocked: Array, data: st.DataObject) -> None:
+    """Between any two cells the search finds the shortest distance, or FAR where that is above the limit."""
+    cells = st.tuples(*(st.integers(0, side - 1) for side in blocked.shape))
+    source, target = data.draw(cells), data.draw(cells)
+    most = data.draw(st.integers(0, 30))
+    blocked[target] = False
+    exact = int(independent(blocked, source)[target])
+    assert distance(blocked, source, target, most) == (exact if exact <= most else FAR)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_distance_is_that_of_a_plain_search(seed: int) -> None:
+    """On larger maps with many detours, A* and the breadth-first search agree."""
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((60, 80)) < rng.uniform(0.1, 0.45)
+    free = np.argwhere(~blocked)
+    for a, b in rng.choice(free, size=(30, 2)).tolist():
+        assert distance(blocked, tuple(a), tuple(b), FAR) == distances(blocked, tuple(a), tuple(b))[tuple(b)]

@@ -69,7 +69,7 @@ def test_the_generator_alone_fixes_a_world(family: DrawnMaps, seed: int, episode
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.words())
 def test_drawn_maps_never_run_out(family: DrawnMaps) -> None:
     """A family that draws its maps has any number of tasks, and its words say all its settings."""
-    assert family.tasks(conditions()) is None
+    assert family.tasks(conditions(), 1) is None
     assert family.words() == f"{type(family).__name__} {family.model_dump_json()}"
 
 

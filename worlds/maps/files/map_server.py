@@ -1,78 +1,136 @@
-"""The YAML and the grey image of ROS's map_server (mode trinary).
+"""The YAML of ROS's map_server, and what the pixels of its image mean.
 
-Every mistake in a file is a `MapError` that reads `FILE: got X; expected Y`.
+Words used here
+    shade        of a pixel, from black 0 to white 255: the mean of its colours
+    probability  that a cell is occupied, from 0 to 1; nan where it is unknown
 """
 
-from io import BytesIO
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-import yaml
-from PIL import Image, UnidentifiedImageError
-from pydantic import AfterValidator, BaseModel, Field, ValidationError, ValidationInfo
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, ValidationInfo
 
-from fogbench.worlds.settings import Probability
-from fogbench.worlds.types import Array, MapError
+from fogbench.worlds.maps.files.image import Pixels
+from fogbench.worlds.maps.files.mistakes import refuse
+from fogbench.worlds.reading.blocks import read_block
+from fogbench.worlds.reading.document import parse
+from fogbench.worlds.reading.positions import Fault
+from fogbench.worlds.settings import MapFile, Probability, Settings
+from fogbench.worlds.types import Array
+
+SAVED_UNKNOWN = 205
+"""The shade that map_saver writes for unknown cells."""
+
+TRUTHS = {"true": 1, "yes": 1, "on": 1, "false": 0, "no": 0, "off": 0}
+
+
+def _number(negate: Any) -> Any:
+    return TRUTHS.get(str(negate).casefold(), negate)
+
+
+def _lower(mode: Any) -> Any:
+    return mode.lower() if isinstance(mode, str) else mode
+
+
+def _slashes(image: Any) -> Any:
+    return image.replace("\\", "/") if isinstance(image, str) else image
 
 
 def _below_occupied(free: float, info: ValidationInfo) -> float:
-    if free >= info.data.get("occupied_thresh", 1):
-        raise PydanticCustomError("order", "less than occupied_thresh")
+    if free >= info.data.get("occupied_thresh", 2):
+        raise ValueError("less than occupied_thresh")
     return free
 
 
-class Header(BaseModel, frozen=True):
+def _not_raw(negate: int, info: ValidationInfo) -> int:
+    if negate and info.data.get("mode") == "raw":
+        raise ValueError("0 in mode raw, where map_server of ROS 1 and that of ROS 2 read 1 differently")
+    return negate
+
+
+class Header(Settings):
     """The YAML; keys that map_server does not know are let be."""
 
-    image: Path
+    model_config = ConfigDict(extra="ignore")
+
+    image: Annotated[MapFile, BeforeValidator(_slashes)]
     """A file, relative to the YAML's folder."""
-    resolution: Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    """Side of a cell [m]."""
+    resolution: Annotated[float, Field(gt=0)]
+    """Side of a pixel [m]."""
     origin: tuple[float, float, float]
-    """Pose of the lower left corner ([m], [m], [rad])."""
-    negate: bool
+    """Pose of the lower left corner of the image ([m], [m], [rad])."""
+    mode: Annotated[Literal["trinary", "scale", "raw"], BeforeValidator(_lower)] = "trinary"
+    """What a shade means."""
+    negate: Annotated[Literal[0, 1], BeforeValidator(_number), AfterValidator(_not_raw)]
     """Whether white is occupied."""
     occupied_thresh: Probability
-    """Cells above are occupied."""
+    """Cells of a higher probability are occupied."""
     free_thresh: Annotated[Probability, AfterValidator(_below_occupied)]
-    """Cells below are free; what is neither is unknown."""
-    mode: Literal["trinary"] = "trinary"
+    """Cells of a lower probability are free."""
+
+
+class Occupancy(NamedTuple):
+    """What is known of the cells of an image."""
+
+    free: Array
+    """[H, W] bool; what is neither free nor occupied is unknown, or lies between the thresholds."""
+    occupied: Array
+    """[H, W] bool."""
+    saved: int
+    """Cells of the shade of unknown cells that free_thresh would call free."""
+    between: int
+    """Cells between the thresholds, in a mode in which these are not unknown."""
 
 
 def read_header(path: Path, contents: bytes) -> Header:
-    """The contents of a `.yaml` file."""
+    """The contents of a `.yaml` file.
+
+    Raises:
+        MapError: it is broken, or its image is not there; a line for each mistake.
+    """
+    faults: list[Fault] = []
     try:
-        return Header.model_validate(yaml.safe_load(contents))
-    except ValidationError as errors:
-        first = errors.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        if first["type"] == "missing":
-            raise MapError(f"{path}: got no {place!r}; expected {', '.join(Header.model_fields)}") from None
-        wanted = first["msg"].removeprefix("Input should be ")
-        raise MapError(f"{path}: {place or 'all'}: got {str(first['input'])[:40]!r}; expected {wanted}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:  # a date that is none, endless brackets
-        mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
-        line = mark.line + 1 if mark else 1
-        raise MapError(f"{path}:{line}: got text that is no YAML; expected lines such as 'negate: 0'") from None
+        page = parse(contents.decode("utf-8-sig"), faults)
+    except UnicodeDecodeError as error:
+        before = contents[: error.start].replace(b"\r\n", b"\n").split(b"\n")
+        got = f"the byte 0x{contents[error.start]:02x}"
+        page = None
+        faults.append(Fault(len(before), len(before[-1].decode("utf-8", "replace")) + 1, "", got, "UTF-8 text"))
+    header = read_block(Header, page, {"folder": path.parent}, faults) if page else None
+    faults += (
+        [each.wrong(f"the variable {each.unset} to be set") for each in page.below() if each.unset] if page else []
+    )
+    refuse(path, faults)
+    assert header is not None
+    return header
 
 
-def read_image(path: Path, contents: bytes) -> Array:
-    """The grey values of a `.pgm` file, P2 or P5: [H, W] uint8."""
-    try:
-        with Image.open(BytesIO(contents), formats=["PPM"]) as image:
-            mode, grey = image.mode, np.asarray(image)  # [H, W]
-    except UnidentifiedImageError:
-        raise MapError(f"{path}: got no PGM image; expected P2 or P5") from None
-    except (OSError, ValueError, Image.DecompressionBombError) as error:
-        raise MapError(f"{path}: got a broken PGM image ({error}); expected P2 or P5") from None
-    if mode != "L":
-        raise MapError(f"{path}: got an image of mode {mode}; expected 8-bit grey, P2 or P5")
-    return grey
+def occupancy(pixels: Pixels, header: Header) -> Occupancy:
+    """Which cells of an image are free and which are occupied, by the rules of map_server, but for one.
+
+    In mode trinary the shade that map_saver writes for unknown cells is unknown, whatever free_thresh says.
+    """
+    probability = _probability(pixels, header)  # [H, W]
+    saved = np.zeros(probability.shape, np.bool_)  # [H, W]
+    if header.mode == "trinary" and not header.negate:
+        saved = (pixels.shade == SAVED_UNKNOWN) & (probability < header.free_thresh)
+        probability[saved] = np.nan
+    free, occupied = probability < header.free_thresh, probability > header.occupied_thresh
+    known = 0 if header.mode == "trinary" else int(np.isfinite(probability).sum())
+    between = max(0, known - int(free.sum()) - int(occupied.sum()))
+    return Occupancy(free, occupied, int(saved.sum()), between)
 
 
-def occupancy(grey: Array, header: Header) -> tuple[Array, Array]:
-    """Which cells of an image are free, and which are occupied, both [H, W] bool; the others are unknown."""
-    probability = (grey if header.negate else 255 - grey) / 255  # [H, W]
-    return probability < header.free_thresh, probability > header.occupied_thresh
+def _probability(pixels: Pixels, header: Header) -> Array:
+    """[H, W] float; in mode raw a shade up to 100 is a percentage, and one above is unknown."""
+    shade, opacity = pixels
+    if header.mode == "raw":
+        shade = np.rint(shade)
+        return np.where(shade <= 100, shade / 100, np.nan)
+    if header.mode == "trinary" and opacity is not None:
+        shade = (3 * shade + opacity) / 4  # to map_server it is a fourth colour
+    probability: Array = (shade if header.negate else 255 - shade) / 255
+    if header.mode == "scale" and opacity is not None:
+        probability[opacity < 255] = np.nan
+    return probability

@@ -1,114 +1,99 @@
-"""The Moving AI Lab's `.map` and `.scen` files (Sturtevant 2012, "Benchmarks for Grid-Based Pathfinding").
+"""The Moving AI Lab's `.map` files (Sturtevant 2012, "Benchmarks for Grid-Based Pathfinding").
 
-Every mistake in a file is a `MapError` that reads `FILE:LINE: got X; expected Y`.
+A file has any line ends, and may begin with a byte-order mark. All its mistakes are told in one `MapError`.
 """
 
-import math
 import re
+from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from fogbench.worlds.types import Array, Cell, MapError
+from fogbench.worlds.maps.files.mistakes import refuse
+from fogbench.worlds.maps.files.text import WHOLE, lines_of, quoted
+from fogbench.worlds.reading.positions import Fault
+from fogbench.worlds.types import Array
 
 FREE_LETTERS, BLOCKED_LETTERS = ".GS", "@OTW"
 """The letters of a map. Swamp `S` is free as the format says; water `W` cannot be entered from land."""
 
+LETTERS = f"one of {' '.join(FREE_LETTERS + BLOCKED_LETTERS)}"
 
-WHOLE = re.compile("[0-9]{1,9}")
-"""A whole number as the files write it."""
+STRANGE = re.compile(f"[^{re.escape(FREE_LETTERS + BLOCKED_LETTERS)}]")
+"""A letter that no map has."""
 
+HEADER = ("type", "height", "width")
+"""The lines before `map`, in their usual order."""
 
-class Trip(NamedTuple):
-    """One line of a `.scen` file."""
+SIZE = "a whole number from 1"
 
-    start: Cell
-    goal: Cell
-    octile: float
-    """The file's own optimal length: 8-connected, diagonals of length sqrt(2) that cut no corner [cells]."""
+MOST_CELLS = 2**26
+"""Cells of the largest map that is read; a search needs nine bytes for each."""
 
 
 def read_map(path: Path, contents: bytes) -> Array:
-    """The map of a `.map` file: [H, W] bool, True where blocked, read-only."""
-    lines = contents.decode("ascii", "replace").rstrip().splitlines()
-    _expect(path, lines, 1, "type octile")
-    height, width = _dimension(path, lines, 2, "height"), _dimension(path, lines, 3, "width")
-    _expect(path, lines, 4, "map")
-    rows = lines[4:]
-    for number, row in enumerate(rows, 5):
-        _check_row(f"{path}:{number}", row, width)
-    if len(rows) != height:
-        raise MapError(f"{path}:{len(lines)}: got {len(rows)} rows; expected {height}, the height")
-    letters = np.frombuffer("".join(rows).encode(), np.uint8).reshape(height, width)
+    """The map of a `.map` file: [H, W] bool, True where blocked, read-only.
+
+    Raises:
+        MapError: the file is broken; a line for each mistake.
+    """
+    lines, faults = lines_of(contents), list[Fault]()
+    head = list(takewhile(lambda line: line.strip() != "map", lines))
+    words = _header(head, faults)
+    if len(head) == len(lines):
+        faults.append(Fault(len(lines) + 1, 1, "", "no line 'map'", "it between the sizes and the rows"))
+        refuse(path, faults)
+    faults += [Fault(len(head) + 1, 1, word, "nothing", "it above 'map'") for word in HEADER if word not in words]
+    rows, height, width = lines[len(head) + 1 :], words.get("height", 0), words.get("width", 0)
+    faults += _odd_letters(rows, len(head) + 2)
+    if height and width:
+        faults += _odd_sizes(rows, height, width, len(head) + 2)
+    refuse(path, faults)
+    letters = np.frombuffer("".join(rows).encode(), np.uint8).reshape(len(rows), -1)
     blocked: Array = np.isin(letters, np.frombuffer(BLOCKED_LETTERS.encode(), np.uint8))  # [H, W]
     blocked.setflags(write=False)
     return blocked
 
 
-def read_scen(path: Path, contents: bytes, shape: tuple[int, ...]) -> tuple[Trip, ...]:
-    """The tasks of a `.scen` file for a map of `shape` `(H, W)`; the file's x is a column, its y a row."""
-    lines = contents.decode("utf-8", "replace").rstrip().splitlines()
-    version = _line(lines, 1)
-    if version.split()[:1] != ["version"]:
-        raise MapError(f"{path}:1: got {version[:40]!r}; expected 'version 1'")
-    return tuple(_trip(f"{path}:{number}", line, shape) for number, line in enumerate(lines[1:], 2))
+def _header(lines: Sequence[str], faults: list[Fault]) -> dict[str, int]:
+    """The words of the lines before `map`, each with its number; 0 where it has none, or a wrong one."""
+    words = dict[str, int]()
+    for number, line in enumerate(lines[: len(HEADER) + 1], 1):
+        word, value = [*line.split(None, 1), "", ""][:2]
+        if word not in HEADER or word in words:
+            left = [repr(each) for each in HEADER if each not in words]
+            faults.append(Fault(number, 1, "", quoted(line), " or ".join([*left, "'map'"])))
+            continue
+        words[word], column = 0, line.rfind(value) + 1
+        if word == "type" and value.strip() != "octile":
+            faults.append(Fault(number, column, word, quoted(value), "octile, the only type that is read"))
+        elif word != "type" and not (WHOLE.fullmatch(value.strip()) and int(value)):
+            faults.append(Fault(number, column, word, quoted(value), SIZE))
+        elif word != "type":
+            words[word] = int(value)
+    return words
 
 
-def _trip(place: str, line: str, shape: tuple[int, ...]) -> Trip:
-    fields = line.split("\t" if "\t" in line else None)
-    if len(fields) != 9:
-        raise MapError(f"{place}: got {len(fields)} fields; expected 9: bucket, map, width, height, x, y, x, y, length")
-    width, height, *ends = (_whole(place, field) for field in fields[2:8])
-    if (height, width) != shape:
-        raise MapError(
-            f"{place}: got a map of {width} x {height}; expected {shape[1]} x {shape[0]}, as the map file has"
-        )
-    for x, y in (ends[:2], ends[2:]):
-        if x >= width or y >= height:
-            raise MapError(f"{place}: got x {x}, y {y}; expected x below {width} and y below {height}")
-    return Trip((ends[1], ends[0]), (ends[3], ends[2]), _length(place, fields[8]))
+def _odd_letters(rows: Sequence[str], first: int) -> list[Fault]:
+    """Letters that no map has: each once a row."""
+    return [
+        Fault(number, row.index(letter) + 1, "", repr(letter), LETTERS)
+        for number, row in enumerate(rows, first)
+        for letter in dict.fromkeys(STRANGE.findall(row))
+    ]
 
 
-def _expect(path: Path, lines: list[str], number: int, text: str) -> None:
-    line = _line(lines, number)
-    if line.split() != text.split():
-        raise MapError(f"{path}:{number}: got {line[:40]!r}; expected {text!r}")
-
-
-def _dimension(path: Path, lines: list[str], number: int, name: str) -> int:
-    line = _line(lines, number)
-    word, _, value = line.strip().partition(" ")
-    if word != name or not WHOLE.fullmatch(value.strip()) or int(value) == 0:
-        raise MapError(f"{path}:{number}: got {line[:40]!r}; expected {name!r} and a whole number from 1")
-    return int(value)
-
-
-def _check_row(place: str, row: str, width: int) -> None:
-    if len(row) != width:
-        raise MapError(f"{place}: got {len(row)} letters; expected {width}, the width")
-    strange = set(row) - set(FREE_LETTERS + BLOCKED_LETTERS)
-    if strange:
-        column = min(map(row.index, strange))
-        expected = " ".join(FREE_LETTERS + BLOCKED_LETTERS)
-        raise MapError(f"{place}: got {row[column]!r} in column {column}; expected one of {expected}")
-
-
-def _whole(place: str, field: str) -> int:
-    if not WHOLE.fullmatch(field.strip()):
-        raise MapError(f"{place}: got {field[:40]!r}; expected a whole number from 0")
-    return int(field)
-
-
-def _length(place: str, field: str) -> float:
-    try:
-        length = float(field)
-    except ValueError:
-        length = math.nan
-    if not 0 <= length < math.inf:
-        raise MapError(f"{place}: got {field[:40]!r}; expected a length from 0")
-    return length
-
-
-def _line(lines: list[str], number: int) -> str:
-    return lines[number - 1] if number <= len(lines) else ""
+def _odd_sizes(rows: Sequence[str], height: int, width: int, first: int) -> list[Fault]:
+    """Rows that are too short or too long, too few or too many; or too many cells for any map."""
+    if height * width > MOST_CELLS:
+        return [Fault(1, 1, "", f"{height * width:,} cells", f"at most {MOST_CELLS:,}")]
+    faults = [
+        Fault(number, min(len(row), width) + 1, "", f"{len(row)} letters", f"{width}, the width")
+        for number, row in enumerate(rows, first)
+        if len(row) != width
+    ]
+    if len(rows) != height:
+        place = first + min(len(rows), height)
+        faults.append(Fault(place, 1, "", f"{len(rows)} rows", f"{height}, the height"))
+    return faults

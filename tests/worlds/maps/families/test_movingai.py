@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.movingai import MovingAI
@@ -37,10 +38,10 @@ def goals(maps: MovingAI, under: GridConditions, count: int) -> list[Cell]:
 def test_every_fitting_task_is_taken_once(tmp_path: Path) -> None:
     """The episodes are the tasks whose optimum is in the bounds, each once; the blocked goal never."""
     maps = family(tmp_path)
-    assert maps.tasks(conditions(5, 12)) == 8
+    assert maps.tasks(conditions(5, 12), 100) == 8
     assert sorted(goals(maps, conditions(5, 12), 8)) == [(0, column) for column in range(5, 13)]
-    assert maps.tasks(conditions(1, 100)) == 29
-    assert maps.tasks(conditions(50, 100)) == 0
+    assert maps.tasks(conditions(1, 100), 100) == 29
+    assert maps.tasks(conditions(50, 100), 100) == 0
 
 
 def test_the_order_hangs_on_the_contents_alone(tmp_path: Path) -> None:
@@ -74,6 +75,7 @@ def test_no_more_tasks_are_searched_than_needed(tmp_path: Path, monkeypatch: pyt
     maps = family(tmp_path)
     for episode in (2, 0, 1, 2):
         maps.sample(RNG, episode, conditions(1, 100))
+    assert maps.tasks(conditions(1, 100), 3) == 3
     assert 3 <= len(searched) <= 5
 
 
@@ -87,16 +89,16 @@ def test_words_hold_the_contents_and_not_the_place(tmp_path: Path) -> None:
     (tmp_path / "here/x.map").write_text(MAP.replace("@", "T"))
     (tmp_path / "there/x.map.scen").write_text("version 1\n")
     assert len({here.words(), there.words(), same.words()}) == 3
-    assert there.tasks(conditions(1, 100)) == 0
+    assert there.tasks(conditions(1, 100), 100) == 0
 
 
 def test_an_episode_past_the_last_task_is_one_line(tmp_path: Path) -> None:
-    """The error says the episode and how many there are."""
+    """The error says how many tasks there are, and which is the first that does not fit, and why."""
     with pytest.raises(MapError) as error:
         family(tmp_path).sample(RNG, 8, conditions(5, 12))
     assert str(error.value) == (
-        f"{tmp_path}/x.map.scen: got episode 8, counted from 0; "
-        "expected at most 8 episodes, the tasks with an optimum of 5 to 12 cells"
+        f"{tmp_path}/x.map.scen: only 8 of 31 tasks are usable, for 9 episodes: line 2: "
+        "goal [0, 0]: got the cell of the start; expected another one"
     )
 
 
@@ -109,4 +111,116 @@ def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(MapError, match=r"y\.scen: got no such file or directory; expected a file to read"):
         maps.words()
     with pytest.raises(MapError, match="got is a directory; expected a file to read"):
-        MovingAI(map=tmp_path).tasks(conditions(1, 100))
+        MovingAI(map=tmp_path).tasks(conditions(1, 100), 1)
+
+
+def test_a_list_that_is_used_up_is_told_as_such(tmp_path: Path) -> None:
+    """Where all tasks fit and more are wanted, no task is blamed."""
+    maps = family(tmp_path)
+    listed = (tmp_path / "x.map.scen").read_text().splitlines()
+    (tmp_path / "x.map.scen").write_text("\n".join(listed[i] for i in (0, 3, 4)))
+    with pytest.raises(MapError, match=r"x\.map\.scen: got 2 tasks; expected 3, one for each episode$"):
+        maps.sample(RNG, 2, conditions(1, 100))
+
+
+@pytest.mark.parametrize("name", ["x.map", "maps/dao/X.MAP", r"C:\maps\x.map", "x"])
+def test_a_list_may_name_its_map_in_any_folder_and_case(tmp_path: Path, name: str) -> None:
+    """Such a name is the map's own: nothing is said."""
+    maps = family(tmp_path)
+    rename(tmp_path, name)
+    assert [note for note in maps.notes() if "are played on" in note] == []
+    assert maps.tasks(conditions(1, 100), 1) == 1
+
+
+def rename(folder: Path, name: str) -> None:
+    """Let all lines of the list name another map."""
+    scen = folder / "x.map.scen"
+    scen.write_text(scen.read_text().replace("x.map", name))
+
+
+def test_a_list_of_another_map_is_refused(tmp_path: Path) -> None:
+    """Its lines name another map, and one of its tasks lies on an obstacle of this one."""
+    maps = family(tmp_path)
+    rename(tmp_path, "b.map")
+    with pytest.raises(MapError) as error:
+        maps.tasks(conditions(1, 100), 1)
+    assert str(error.value) == (
+        f"{tmp_path}/x.map.scen:2:1  got 31 tasks of b.map, 1 of them on obstacles of x.map; expected tasks of x.map "
+        "(name another list by scen, or this map in the list)."
+    )
+
+
+def test_how_a_list_was_read_is_told(tmp_path: Path) -> None:
+    """Tasks on obstacles are counted; those of a map of another name are played, where all fit, and told."""
+    maps = family(tmp_path)
+    scen = tmp_path / "x.map.scen"
+    assert maps.notes() == [f"{scen}: 1 of 31 tasks lie on obstacles and are left out, the first on line 32"]
+    (tmp_path / "x.map").write_text(MAP.replace("@", "."))
+    rename(tmp_path, "old.map")
+    assert maps.notes() == [f"{scen}: 31 tasks of old.map are played on x.map"]
+    scen.write_text(scen.read_text().replace("old.map", "x.map"))
+    assert maps.notes() == []
+
+
+def test_a_fixed_task_is_that_of_every_episode(tmp_path: Path) -> None:
+    """Start and goal in cells take the place of a list, which need not be there; other tasks have other words."""
+    maps = family(tmp_path, start=(1, 2), goal=(0, 7))
+    (tmp_path / "x.map.scen").unlink()
+    for episode in (0, 999):
+        world = maps.sample(RNG, episode, conditions(1, 100))
+        assert (world.start, world.task.goal, world.shortest()) == ((1, 2), (0, 7), 6.0)
+    assert maps.tasks(conditions(1, 100), 1) is None
+    assert maps.notes() == ()
+    assert maps.words() != maps.model_copy(update={"goal": (0, 8)}).words()
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "text"),
+    [
+        ((1, 29), (0, 0), "start [1, 29]: got an obstacle; expected a free cell"),
+        ((0, 0), (1, 29), "goal [1, 29]: got an obstacle; expected a free cell"),
+        (
+            (0, 0),
+            (2, 0),
+            "goal [2, 0]: got a cell outside of the map; expected a row below 2 and a column below 30",
+        ),
+        ((0, 0), (0, 0), "goal [0, 0]: got the cell of the start; expected another one"),
+        (
+            (0, 0),
+            (0, 3),
+            "goal [0, 3]: got a shortest path of 3 cells from the start [0, 0]; expected an optimum of 5 to 12 cells",
+        ),
+    ],
+)
+def test_a_fixed_task_that_cannot_be_is_one_line(tmp_path: Path, start: Cell, goal: Cell, text: str) -> None:
+    """The line says which end is wrong, and why."""
+    with pytest.raises(MapError) as error:
+        family(tmp_path, start=start, goal=goal).sample(RNG, 0, conditions(5, 12))
+    assert str(error.value) == f"{tmp_path}/x.map: {text}"
+
+
+def test_a_fixed_task_that_is_not_connected_is_one_line(tmp_path: Path) -> None:
+    """No path is another reason than one that is too long."""
+    maps = family(tmp_path, start=(0, 0), goal=(0, 29))
+    (tmp_path / "x.map").write_text(
+        MAP.replace("." * 29 + "@", "." * 14 + "@" + "." * 15).replace("." * 30, "." * 14 + "T" * 16)
+    )
+    with pytest.raises(MapError, match=r"goal \[0, 29\]: got an obstacle; expected a free cell$"):
+        maps.sample(RNG, 0, conditions(1, 100))
+    maps = maps.model_copy(update={"goal": (1, 29)})
+    with pytest.raises(MapError, match=r"goal \[1, 29\]: got no path from the start \[0, 0\]; expected one$"):
+        maps.sample(RNG, 0, conditions(1, 100))
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        ({"start": (0, 0)}, "start and goal, or neither"),
+        ({"goal": (0, 0)}, "start and goal, or neither"),
+        ({"start": (0, 0), "goal": (0, 1), "scen": "x.scen"}, "scen, or start and goal; not both"),
+    ],
+)
+def test_half_a_task_is_refused(fields: dict[str, Any], expected: str) -> None:
+    """A task has two ends, and takes the place of a list."""
+    with pytest.raises(ValidationError, match=expected):
+        MovingAI.model_validate({"map": "x.map", **fields})

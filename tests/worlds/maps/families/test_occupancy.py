@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.occupancy import Occupancy
@@ -53,7 +54,7 @@ def test_tasks_are_drawn_over_all_free_cells(tmp_path: Path) -> None:
     free = set(map(tuple, np.argwhere(~drawn[0].blocked).tolist()))
     assert {found.start for found in drawn} == {found.task.goal for found in drawn} == free
     assert sample(maps, 5).start == drawn[5].start
-    assert maps.tasks(GridConditions.model_validate({"budget": {"steps": 9}})) is None
+    assert maps.tasks(GridConditions.model_validate({"budget": {"steps": 9}}), 1) is None
 
 
 def test_episodes_share_one_read_only_map(tmp_path: Path) -> None:
@@ -115,3 +116,84 @@ def test_real_floors_equal_a_plain_reading(name: str, downsample: int) -> None:
         top, left = r * downsample, c * downsample
         square = fine[top : top + downsample, left : left + downsample]
         assert value == (square.any() or square.shape != (downsample, downsample))
+
+
+ROS_2 = YAML.replace("0.196", "0.25")
+
+
+def test_unknown_cells_of_ros_2_are_blocked_and_counted(tmp_path: Path) -> None:
+    """A free_thresh of 0.25 beside grey 205 gives the map that 0.196 gives, and says what it did."""
+    expected = sample(family(tmp_path / "here")).blocked
+    maps = family(tmp_path)
+    (tmp_path / "x.yaml").write_text(ROS_2)
+    assert np.array_equal(sample(maps).blocked, expected)
+    why = "which map_saver writes for unknown, though free_thresh 0.25 calls them free"
+    assert maps.notes() == [f"{tmp_path}/x.pgm: 23 cells of grey 205 are blocked, {why}"]
+    assert family(tmp_path / "here").notes() == []
+
+
+def test_cells_between_the_thresholds_are_counted(tmp_path: Path) -> None:
+    """In mode scale, grey 205 is a probability of 0.196, neither free nor occupied."""
+    maps = family(tmp_path, "???\n?.#")
+    (tmp_path / "x.yaml").write_text(YAML + "mode: scale\n")
+    assert maps.notes() == [f"{tmp_path}/x.pgm: 4 cells between free_thresh and occupied_thresh are blocked"]
+
+
+def test_a_fixed_task_in_cells(tmp_path: Path) -> None:
+    """Cells count in the cropped and coarsened map; every episode plays the task, whose words are its own."""
+    maps = family(tmp_path, downsample=2, start=(0, 1), goal=(1, 0))
+    maps = maps.model_copy(update={"goal": (1, 1)})
+    for seed in (0, 1):
+        world = sample(maps, seed)
+        assert (world.start, world.task.goal, world.shortest()) == ((0, 1), (1, 1), 1.0)
+    assert maps.words() == family(tmp_path, downsample=2).words() + " start=(0, 1) goal=(1, 1)"
+
+
+@pytest.mark.parametrize(
+    ("origin", "start", "goal"),
+    [
+        ("[0, 0, 0]", (0.15, 0.15), (0.55, 0.45)),
+        ("[0, 0, 0]", (0.1, 0.1), (0.5, 0.4)),
+        ("[-19.0, 2, 0]", (-18.85, 2.15), (-18.45, 2.45)),
+        ("[0, 0, 1.5707963267948966]", (-0.15, 0.15), (-0.45, 0.55)),
+    ],
+)
+def test_a_fixed_task_in_metres(
+    tmp_path: Path, origin: str, start: tuple[float, float], goal: tuple[float, float]
+) -> None:
+    """Metres count from the lower left corner, turned by its yaw; the ends are the lower left and upper right cells."""
+    ends = {name: {"x": x, "y": y} for name, (x, y) in (("start", start), ("goal", goal))}
+    maps = family(tmp_path, **ends)
+    (tmp_path / "x.yaml").write_text(YAML.replace("[0, 0, 0]", origin))
+    world = sample(maps)
+    assert (world.start, world.task.goal) == ((3, 0), (0, 4))
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "text"),
+    [
+        ((1, 1), (0, 0), "start [1, 1]: got an obstacle; expected a free cell"),
+        ((0, 0), (0, 5), "goal [0, 5]: got a cell outside of the map; expected a row below 4 and a column below 5"),
+        (
+            (0, 0),
+            {"x": 1e6, "y": -1e6},
+            "goal [10000004, 9999999]: got a cell outside of the map; expected a row below 4 and a column below 5",
+        ),
+        (
+            (0, 0),
+            (0, 1),
+            "goal [0, 1]: got a shortest path of 1 cells from the start [0, 0]; expected an optimum of 2 to 9 cells",
+        ),
+    ],
+)
+def test_a_fixed_task_that_cannot_be_is_one_line(tmp_path: Path, start: Any, goal: Any, text: str) -> None:
+    """The line says which end is wrong, and why."""
+    with pytest.raises(MapError) as error:
+        sample(family(tmp_path, start=start, goal=goal), tasks={"distance": [2, 9]})
+    assert str(error.value) == f"{tmp_path}/x.yaml: {text}"
+
+
+def test_half_a_task_is_refused(tmp_path: Path) -> None:
+    """A task has two ends."""
+    with pytest.raises(ValidationError, match="start and goal, or neither"):
+        family(tmp_path, start=(0, 0))

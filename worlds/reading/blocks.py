@@ -7,9 +7,9 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from fogbench.bench.reading.positions import Fault, Value
-from fogbench.bench.reading.shapes import Shape, shape
 from fogbench.worlds.mistake import near, one_of
+from fogbench.worlds.reading.positions import Fault, Value
+from fogbench.worlds.reading.shapes import Shape, shape
 from fogbench.worlds.settings import Settings
 
 Block = TypeVar("Block", bound=Settings)

@@ -4,7 +4,7 @@ Nothing is read into a number or a truth value here: `1e-3`, `no` and `010` stay
 the field that they are for reads them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -35,6 +35,12 @@ class Fault(NamedTuple):
         path = f"{self.path}: " if self.path else ""
         told = f"got {self.got}; expected" if self.got else "missing; give"
         return f"{file}:{self.line}:{self.column}  {path}{told} {self.expected}.{meant(self.near)}"
+
+
+def told(faults: Iterable[Fault], file: str) -> list[str]:
+    """All that is wrong with a file, in order and once."""
+    ordered = sorted(faults, key=lambda fault: (fault.line, fault.column))
+    return list(dict.fromkeys(fault.text(file) for fault in ordered))
 
 
 class Spot(NamedTuple):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import yaml
 
-from fogbench.bench.reading.positions import SHOWN, Fault, Spot, Value, join, shown
+from fogbench.worlds.reading.positions import SHOWN, Fault, Spot, Value, join, shown
 
 VARIABLE = re.compile(r"\$\{(\w+)\}")
 """`${NAME}`: the environment variable of that name."""

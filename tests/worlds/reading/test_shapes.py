@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import pytest
 from pydantic import Field
 
-from fogbench.bench.reading.shapes import shape
+from fogbench.worlds.reading.shapes import shape
 from fogbench.worlds.settings import Count, MapFile, Positive, PositiveRange, Probability, Range, Settings
 
 

@@ -1,0 +1,55 @@
+"""A task that a scenario fixes on a map of cells, and why a task does not fit."""
+
+import numpy as np
+
+from fogbench.worlds.maps.cells import passable
+from fogbench.worlds.maps.distances import FAR, distances
+from fogbench.worlds.maps.layout import CellConditions, Layout
+from fogbench.worlds.types import Array, Cell, MapError, World
+
+
+def both_or_neither(start: object, goal: object) -> None:
+    """Hold it against a family that only half of its task is fixed.
+
+    Raises:
+        ValueError: one of them is None.
+    """
+    if (start is None) != (goal is None):
+        raise ValueError("start and goal, or neither")
+
+
+def fixed(map_: str, blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) -> World:
+    """The world of a fixed task.
+
+    Args:
+        map_: what the map is called in errors.
+        blocked: [H, W] bool.
+        start: may lie outside of the map, as `goal`.
+        goal: of the task.
+        conditions: of the scenario.
+
+    Raises:
+        MapError: the task does not fit; the text says which end of it, and why.
+    """
+    inside = all(0 <= n < side for cell in (start, goal) for n, side in zip(cell, blocked.shape, strict=True))
+    world = conditions.world(Layout(blocked), start, goal) if inside else None
+    if world is None:
+        raise MapError(f"{map_}: {misfit(blocked, start, goal, conditions)}")
+    return world
+
+
+def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) -> str:
+    """Why a task does not fit its map [H, W] or the conditions, in words for an error."""
+    height, width = blocked.shape
+    for name, (row, column) in (("start", start), ("goal", goal)):
+        place = f"{name} [{row}, {column}]"
+        if not (0 <= row < height and 0 <= column < width):
+            return f"{place}: got a cell outside of the map; expected a row below {height} and a column below {width}"
+        if not passable(blocked, row, column):
+            return f"{place}: got an obstacle; expected a free cell"
+    if start == goal:
+        return f"{place}: got the cell of the start; expected another one"
+    way = int(distances(np.asarray(blocked), start, goal)[goal])
+    if way == FAR:
+        return f"{place}: got no path from the start {list(start)}; expected one"
+    return f"{place}: got a shortest path of {way} cells from the start {list(start)}; expected {conditions.wanted()}"

@@ -1,0 +1,1 @@
+"""YAML read into settings, with every mistake at its place."""
