@@ -1,12 +1,19 @@
 """Names of things, here and in other packages, as `module:object`; nothing is imported before it is asked for."""
 
+import sys
 from collections.abc import Mapping
 from functools import cache
+from importlib import import_module
 from importlib.metadata import entry_points
 from pkgutil import resolve_name
+from types import ModuleType
 from typing import Any
 
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.undisturbed import undisturbed
+
+OURS = ("fogbench.worlds.", "fogbench.planners.", "fogbench.learned.")
+"""What the names of modules begin with that ship with the project."""
 
 
 @cache
@@ -37,7 +44,20 @@ def imported(target: str, place: str) -> Any:
         Mistake: nothing does, or it cannot be imported; the text says who wants it.
     """
     try:
+        brought(target.partition(":")[0])
         return resolve_name(target)
     except Exception as error:  # noqa: BLE001  a user's module may raise anything
         told = f"got {target}, which raises {type(error).__name__}: {error}"
         raise Mistake(f"{place}: {told}; expected something that can be imported.") from None
+
+
+def brought(module: str) -> ModuleType:
+    """Import a module; one that does not ship with the project leaves this process as it was.
+
+    Raises:
+        Exception: whatever it raises.
+    """
+    if module in sys.modules or module.startswith(OURS):
+        return import_module(module)
+    with undisturbed(seed=0):
+        return import_module(module)
