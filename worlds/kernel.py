@@ -109,7 +109,7 @@ class _Forms:
         Raises:
             OSError: its file cannot be read.
         """
-        self.name = f"{function.__module__}.{function.__qualname__}"
+        self.name = f"{function.__module__}.{function.__qualname__}"[-100:]  # a user's module has the name of its place
         text = Path(getfile(function)).read_text("utf-8")  # a user's file is none of `_sources`
         held = [_identity(cell.cell_contents) for cell in function.__closure__ or ()]
         chosen = [(name, sorted(option)) for name, option in options.items()]

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from fogbench.bench.playing.sources import Import, read_source
+from fogbench.bench.reading.plugin_files import is_file
 
 PROJECT = __name__.partition(".")[0]
 
@@ -60,11 +61,11 @@ def _closure(start: type | str) -> Closure:
             packages.update({_top(name)} - sys.stdlib_module_names)
             continue
         place, holder = _find(name), name.rpartition(".")[0]
-        waiting += [holder] if holder else []
+        waiting += [holder] if holder and not is_file(name) else []
         if place is None or not _is_table(name, place):
             contents[name] = _digest(place)
             waiting += _imported(name, place, own)
-    if "." not in modules[0]:  # a file may lie anywhere, under any name
+    if is_file(modules[0]) or "." not in modules[0]:  # a file may lie anywhere, under any name
         contents[""] = contents.pop(modules[0], "")
     return Closure(frozenset(contents.items()), frozenset(packages))
 

@@ -3,20 +3,18 @@
 Nothing is imported before a scenario names it.
 """
 
-import sys
-from importlib import import_module
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
+from fogbench.bench.reading.plugin_files import module_name
 from fogbench.bench.reading.tables import EXTRAS, KIND, PACKAGES, Table
 from fogbench.worlds import KINDS, Kind
 from fogbench.worlds.mistake import Unavailable, near, one_of
 from fogbench.worlds.reading.blocks import raised
 from fogbench.worlds.settings import Settings
-from fogbench.worlds.streams import digest
-from fogbench.worlds.tables import registered
+from fogbench.worlds.tables import brought, registered
 
 Thing = TypeVar("Thing")
 
@@ -107,7 +105,7 @@ def _thing(name: str, target: str, sort: type[Thing], told: str) -> Thing:
 
 def _import(name: str, place: str) -> ModuleType:
     try:
-        return _from_file(Path(place)) if place.endswith(".py") else import_module(place)
+        return brought(module_name(Path(place)) if place.endswith(".py") else place)
     except ModuleNotFoundError as error:
         missing = error.name or ""
         if f"{place}.".startswith(f"{missing}."):
@@ -146,19 +144,3 @@ def _how_to_get(name: str, package: str) -> str:
     if name in EXTRAS:
         return f'needs the extra {EXTRAS[name]}: pip install ".[{EXTRAS[name]}]"'
     return f"needs the package {package}, which is not installed"
-
-
-def _from_file(file: Path) -> ModuleType:
-    """The module of a file, loaded once in a process under a name that no other file has."""
-    name = f"{file.stem}_{digest(file)[:16]}"
-    if name not in sys.modules:
-        spec = spec_from_file_location(name, file)
-        assert spec is not None
-        assert spec.loader is not None
-        sys.modules[name] = module_from_spec(spec)
-        try:
-            spec.loader.exec_module(sys.modules[name])
-        except BaseException:
-            del sys.modules[name]
-            raise
-    return sys.modules[name]
