@@ -10,6 +10,8 @@ from rich.console import Console
 
 from fogbench.bench.check import notes, refuse_idle
 from fogbench.bench.playing import store
+from fogbench.bench.playing.agenda import FIRST
+from fogbench.bench.playing.crashes import FOLDER
 from fogbench.bench.playing.keys import Versions
 from fogbench.bench.playing.pool import cpus
 from fogbench.bench.playing.provenance import differences, read_run, versions_of
@@ -32,6 +34,12 @@ OUTDATED = (
     "tables stay as they are; `fogbench run` plays the episodes again."
 )
 """What a user is told in place of a report without a number."""
+
+HUNG = (
+    f"{{agent}} hung in its first {FIRST} episodes of {{variant}}, and was not asked for the other {{count}}. "
+    "To go on, mend it, or give it more time by `budget: {{hard_seconds: ...}}`, and run again."
+)
+"""What a user is told of episodes that were left out."""
 
 
 def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, results: Path) -> bool:
@@ -107,6 +115,8 @@ def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> b
     with Bars(scenario.name, console) as bars:
         played = run(scenario, folder, workers, bars.watch)
     say(_counts(played), console)
+    for (variant, agent), count in played.hung.items():
+        say(HUNG.format(agent=agent, variant=variant, count=count), console, style="yellow")
     return _report(scenario, folder, console, None)
 
 
@@ -129,6 +139,8 @@ def _report(scenario: Scenario, folder: Path, console: Console, versions: Versio
     for line in write_plots(frame, table, scenario, run_facts, folder):
         say(line, console)
     say(f"Tables and plots are in {folder}/", console)
+    if (folder / FOLDER).exists():
+        say(f"Where agents crashed first is in {folder / FOLDER}/", console)
     return bool(frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name]).any())
 
 

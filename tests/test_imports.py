@@ -110,7 +110,7 @@ def test_a_check_loads_no_tables_and_no_plots() -> None:
     """It draws a world of each variant, for which it needs Numba, and holds all weights against their settings."""
     found = loaded(told("check", "grid"))
     assert {"numba", "safetensors", "fogbench.planners.rrt_star", "fogbench.learned.macn"} <= found
-    light = {"pandas", "pyarrow", "matplotlib", "scipy.stats", "scipy.sparse", "pebble", "sklearn", "torch"}
+    light = {"pandas", "pyarrow", "matplotlib", "scipy.stats", "scipy.sparse", "sklearn", "torch"}
     assert not light & found
 
 

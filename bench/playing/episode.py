@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import pyarrow as pa
 
@@ -60,6 +60,14 @@ class Episode:
     """Worker processes that ran side by side; it belongs to the timings."""
     agent_key: str
     world_key: str
+
+
+class Played(NamedTuple):
+    """An episode, as a worker hands it over."""
+
+    row: Episode
+    traceback: str
+    """Where its agent crashed; empty if it did not, or nobody knows."""
 
 
 TIMINGS = ("setup_seconds", "decision_seconds", "workers")

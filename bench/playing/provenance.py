@@ -29,7 +29,6 @@ PACKAGES = (
     "pandas",
     "pyarrow",
     "pydantic",
-    "pebble",
     "ompl",
     "torch",
 )

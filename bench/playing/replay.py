@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fogbench.bench.playing.loop import episode_stream, episode_world
+from fogbench.bench.playing.guests import drawn
+from fogbench.bench.playing.loop import episode_stream
 from fogbench.bench.reading.scenario import Variant
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.picture import Picture
@@ -46,7 +47,7 @@ def retrace(variant: Variant, row: Mapping[str, Any]) -> Generator[Moment, None,
         row: at least `episode`, `steps` and `actions`.
     """
     episode, steps = int(row["episode"]), int(row["steps"])
-    world, luck = episode_world(variant, episode), episode_stream(variant, "luck", episode)
+    world, luck = drawn(variant, episode), episode_stream(variant, "luck", episode)
     numbers = np.asarray(row["actions"], np.float64).reshape(steps, -1) if steps else ()  # [steps, any]
     known, path = world.known(), list[Any]()
     state, length, reached, collided = world.reset(), 0.0, False, False

@@ -1,18 +1,22 @@
 """The runner: what is not recorded yet is played, and recorded."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+from fogbench.bench.playing.agenda import Agenda, Outcomes, outcomes
+from fogbench.bench.playing.crashes import Crashes
 from fogbench.bench.playing.enough import refuse_unplayable
+from fogbench.bench.playing.episode import Played
 from fogbench.bench.playing.keys import keys
-from fogbench.bench.playing.local import Job, RunError, play_here
+from fogbench.bench.playing.local import play_here
 from fogbench.bench.playing.outdated import sort_rows
+from fogbench.bench.playing.pool import RunError
 from fogbench.bench.playing.provenance import noted
 from fogbench.bench.playing.recorder import recording
-from fogbench.bench.playing.store import recorded
+from fogbench.bench.playing.store import WHO, read
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Outcome
 
@@ -21,9 +25,6 @@ CHANGED = (
     "it ends. What was played is kept; run the same command again to play the rest."
 )
 """What is told when something that counts was edited meanwhile."""
-
-Recorded = dict[tuple[str, str], set[int]]
-"""The recorded episodes of each (variant, agent)."""
 
 
 class Progress(NamedTuple):
@@ -45,6 +46,8 @@ class Summary:
     """Episodes that were recorded before."""
     outcomes: Counter[Outcome] = field(default_factory=Counter)
     """How the episodes ended that were played now."""
+    hung: dict[tuple[str, str], int] = field(default_factory=dict)
+    """Variants and agents of which episodes are left out, for the first ones all hung; and how many."""
 
 
 def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progress], None]) -> Summary:
@@ -64,31 +67,38 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
     covariates = dict.fromkeys(name for variant in scenario.variants for name in variant.conditions.covariates)
     with recording(folder, tuple(covariates)) as recorder:
         sort_rows(folder, scenario)
-        expected = keys(scenario)
-        done = recorded(folder, scenario)
+        expected, done = keys(scenario), _recorded(folder, scenario)
         counts = {pair: len(episodes) for pair, episodes in done.items()}
         totals = _totals(scenario)
         for pair, total in totals.items():
             watch(Progress(*pair, counts.setdefault(pair, 0), total, None))
-        summary = Summary(kept=sum(counts.values()))
-        workers = min(workers, sum(totals.values()) - summary.kept)
-        if not workers:
-            return summary
-        left = {variant for (variant, agent), total in totals.items() if counts[variant, agent] < total}
-        refuse_unplayable(variant for variant in scenario.variants if variant.name in left)
-        with noted(folder, scenario, workers):
-            for row in play_here(scenario, _jobs(scenario, done), workers):
-                if row is None:
-                    recorder.flush_if_due()
-                    continue
-                pair, outcome = (row.variant, row.agent), Outcome[row.outcome]
-                if (row.agent_key, row.world_key) != expected[pair]:
-                    raise RunError(f"{row.variant}, episode {row.episode}: {CHANGED.format(what=row.agent)}")
-                recorder.append(row)
-                counts[pair] += 1
-                summary.outcomes[outcome] += 1
-                watch(Progress(*pair, counts[pair], totals[pair], outcome))
+        summary, agenda, crashes = Summary(kept=sum(counts.values())), Agenda(scenario, done), Crashes(folder)
+
+        def take(played: Played) -> None:
+            row = played.row
+            pair, outcome = (row.variant, row.agent), Outcome[row.outcome]
+            if (row.agent_key, row.world_key) != expected[pair]:
+                raise RunError(f"{row.variant}, episode {row.episode}: {CHANGED.format(what=row.agent)}")
+            recorder.append(row)
+            crashes.note(played)
+            agenda.ended(*pair, row.episode, row.outcome)
+            counts[pair] += 1
+            summary.outcomes[outcome] += 1
+            watch(Progress(*pair, counts[pair], totals[pair], outcome))
+
+        unfinished = {pair: total - counts[pair] for pair, total in totals.items() if pair not in agenda.hung}
+        if left := sum(unfinished.values()):
+            refuse_unplayable(v for v in scenario.variants if any(unfinished.get((v.name, e.label)) for e in v.agents))
+            with noted(folder, scenario, min(workers, left)):
+                for played in play_here(scenario, agenda, min(workers, left)):
+                    take(played) if played else recorder.flush_if_due()
+    summary.hung = {pair: count for pair in agenda.hung if (count := totals[pair] - counts[pair]) > 0}
     return summary
+
+
+def _recorded(folder: Path, scenario: Scenario) -> Outcomes:
+    rows = read(folder, scenario, (*WHO, "outcome")).groupby(WHO[:2], sort=False)
+    return {(str(v), str(a)): outcomes(group) for (v, a), group in rows}
 
 
 def _totals(scenario: Scenario) -> dict[tuple[str, str], int]:
@@ -98,13 +108,3 @@ def _totals(scenario: Scenario) -> dict[tuple[str, str], int]:
         for entry in variant.agents
         if not entry.skipped
     }
-
-
-def _jobs(scenario: Scenario, done: Recorded) -> Iterator[Job]:
-    """What is left to play; all agents of an episode one after the other, so that a worker may still have its world."""
-    for variant in scenario.variants:
-        labels = [entry.label for entry in variant.agents if not entry.skipped]
-        for episode in range(variant.episodes):
-            for label in labels:
-                if episode not in done.get((variant.name, label), ()):
-                    yield Job(variant.name, label, episode, variant.conditions.budget.hard_seconds)

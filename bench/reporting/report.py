@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 from rich.console import Console
 
+from fogbench.bench.playing.agenda import is_given_up, outcomes
 from fogbench.bench.playing.store import write
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.metrics import METRICS
@@ -38,7 +39,7 @@ def summary(frame: pd.DataFrame, scenario: Scenario) -> pd.DataFrame:
     Returns:
         A table with the columns `COLUMNS`: a number in its unit, its 95 % interval, how many things it is made of.
     """
-    table = pd.DataFrame(_answers(frame, scenario), columns=list(COLUMNS))
+    table = pd.DataFrame(_answers(_rated(frame), scenario), columns=list(COLUMNS))
     together = table["metric"] == "p_holm"
     table.loc[together, "value"] = holm(table.loc[together, "value"])
     return table
@@ -85,7 +86,7 @@ def write_plots(
     try:
         from fogbench.bench.reporting.plots import draw  # noqa: PLC0415  it loads Matplotlib, which tables do not need
 
-        drawn, missing = draw(frame, table, scenario, folder)
+        drawn, missing = draw(_rated(frame), table, scenario, folder)
         write(folder / "summary.md", page(frame, table, scenario, run, drawn).encode())
     except Mistake as mistake:
         missing.append(str(mistake))
@@ -120,6 +121,12 @@ def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...
                 yield from ((*place, metric.name, *metric(cell), metric.unit) for metric in METRICS)
             if len(pairs) and entry.label != variant.reference:
                 yield from ((*place, metric.name, *metric(pairs), metric.unit) for metric in COMPARISONS)
+
+
+def _rated(frame: pd.DataFrame) -> pd.DataFrame:
+    """Without the episodes of agents that were given up: nobody knows their rates."""
+    given_up = [rows.index for _, rows in frame.groupby(["variant", "agent"]) if is_given_up(outcomes(rows))]
+    return frame.drop(index=[row for rows in given_up for row in rows])
 
 
 def _cell(frame: pd.DataFrame, variant: str, agent: str) -> pd.DataFrame:

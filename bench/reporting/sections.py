@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
+from fogbench.bench.playing.agenda import is_given_up, outcomes
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.metrics import METRICS, Metric
 from fogbench.bench.reporting.pairs import COMPARISONS
@@ -30,6 +31,9 @@ NAMED = 5
 
 LONGEST = 200
 """Characters of a detail or a reason at most."""
+
+GIVEN_UP = "; not asked for more, so it has no rate: mend it, or raise `hard_seconds`"
+"""What is told of an agent that hung in its first episodes."""
 
 Found = Mapping[tuple[str, str, str], Estimate]
 """The estimates of a summary by variant, agent and name of the metric."""
@@ -73,11 +77,14 @@ def failures(frame: pd.DataFrame) -> Lines:
     `fogbench replay --episode` shows one.
     """
     failed = frame[frame["outcome"] != Outcome.REACHED.name]
+    given_up = {
+        place for place, rows in failed.groupby(["variant", "agent"], sort=False) if is_given_up(outcomes(rows))
+    }
     headings, rows = ["variant", "agent", "outcome", "count", "episodes", "first detail"], list[list[str]]()
     for place, group in failed.groupby(["variant", "agent", "outcome"], sort=False):
         numbers = [*map(str, sorted(group["episode"])[:NAMED]), *(["…"] if len(group) > NAMED else [])]
-        detail = _brief(next(filter(None, group["detail"]), NOTHING))
-        rows.append([*map(str, place), str(len(group)), ", ".join(numbers), detail])
+        detail = next(filter(None, group["detail"]), NOTHING) + (GIVEN_UP if place[:2] in given_up else "")
+        rows.append([*map(str, place), str(len(group)), ", ".join(numbers), _brief(detail)])
     told = failed["detail"].any()
     return Lines(headings, rows) if told else Lines(headings[:-1], [row[:-1] for row in rows])
 
