@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from fogbench.bench.playing.enough import mistakes
-from fogbench.bench.playing.loop import episode_world
+from fogbench.bench.playing.guests import drawn, guests
 from fogbench.bench.reading.scenario import Scenario, ScenarioError, Variant
 from fogbench.bench.several import each, read_each, say
 from fogbench.worlds.mistake import Mistake
@@ -23,6 +23,7 @@ def check_all(paths: Sequence[Path]) -> None:
     console = Console()
 
     def check(scenario: Scenario) -> None:
+        _rehearse(scenario)
         for line in chain.from_iterable(_outlook(variant) for variant in scenario.variants):
             say(line, console)
         for name, reason in scenario.left_out.items():
@@ -42,13 +43,6 @@ def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
     return scenarios
 
 
-def notes(variant: Variant) -> Sequence[str]:
-    """What a user should know of how the files of its maps were read, in lines."""
-    return variant.family.notes() if isinstance(variant.family, Noted) else ()
-
-
-def refuse_idle(scenario: Scenario) -> None:
-    """Hold it against a scenario that nobody plays it.
 
     Raises:
         Mistake: all its agents are skipped.
@@ -59,9 +53,21 @@ def refuse_idle(scenario: Scenario) -> None:
         raise Mistake(f"{scenario.path}: got no agent that can play here ({reasons}).")
 
 
-def _outlook(variant: Variant) -> Iterator[str]:
-    """What a run would play of a variant that was tried."""
-    world = episode_world(variant, 0)
+def _rehearse(scenario: Scenario) -> None:
+    """Let each user's agent take one decision.
+
+    Raises:
+        Mistake: some cannot.
+    """
+    if guests(scenario):
+        from fogbench.bench.playing.rehearsal import rehearsed  # noqa: PLC0415  it starts processes, and is slow
+
+        if lines := rehearsed(scenario):
+            raise Mistake("\n".join(lines))
+
+
+def refuse_idle(scenario: Scenario) -> None:
+    """Hold it against a scenario that nobody plays it.
     playing = sum(not entry.skipped for entry in variant.agents)
     yield (
         f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "
