@@ -43,16 +43,6 @@ def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
     return scenarios
 
 
-
-    Raises:
-        Mistake: all its agents are skipped.
-    """
-    skipped = {entry.label: entry.skipped for variant in scenario.variants for entry in variant.agents}
-    if all(skipped.values()):
-        reasons = "; ".join(f"{label} {reason}" for label, reason in skipped.items())
-        raise Mistake(f"{scenario.path}: got no agent that can play here ({reasons}).")
-
-
 def _rehearse(scenario: Scenario) -> None:
     """Let each user's agent take one decision.
 
@@ -66,8 +56,26 @@ def _rehearse(scenario: Scenario) -> None:
             raise Mistake("\n".join(lines))
 
 
+def notes(variant: Variant) -> Sequence[str]:
+    """What a user should know of how the files of its maps were read, in lines."""
+    return variant.family.notes() if isinstance(variant.family, Noted) else ()
+
+
 def refuse_idle(scenario: Scenario) -> None:
     """Hold it against a scenario that nobody plays it.
+
+    Raises:
+        Mistake: all its agents are skipped.
+    """
+    skipped = {entry.label: entry.skipped for variant in scenario.variants for entry in variant.agents}
+    if all(skipped.values()):
+        reasons = "; ".join(f"{label} {reason}" for label, reason in skipped.items())
+        raise Mistake(f"{scenario.path}: got no agent that can play here ({reasons}).")
+
+
+def _outlook(variant: Variant) -> Iterator[str]:
+    """What a run would play of a variant that was tried."""
+    world = drawn(variant, 0)
     playing = sum(not entry.skipped for entry in variant.agents)
     yield (
         f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "

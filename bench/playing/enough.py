@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from fogbench.bench.playing.loop import episode_world
+from fogbench.bench.playing.guests import drawn
 from fogbench.bench.reading.scenario import ScenarioError, Variant
 from fogbench.planners import judge_of, reference_settings
 from fogbench.worlds.mistake import Mistake
@@ -37,7 +37,7 @@ def _try(variant: Variant) -> None:
     """
     judge_of(variant.kind)  # what cannot be imported is told now
     reference_settings(variant.kind)
-    episode_world(variant, 0).shortest()
+    drawn(variant, 0).shortest()
     count = variant.family.tasks(variant.conditions, variant.episodes)
     if count is not None and count < variant.episodes:
-        episode_world(variant, variant.episodes - 1)  # it raises, and says why
+        drawn(variant, variant.episodes - 1)  # it raises, and says why

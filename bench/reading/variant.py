@@ -4,17 +4,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 
-<<<<<<< HEAD
 from fogbench.bench.reading.named_files import named_files
 from fogbench.bench.reading.page import NAME, Page, is_name
-=======
-from fogbench.bench.reading.page import Page
-from fogbench.bench.reading.positions import Fault, Value
->>>>>>> 85befb5 (Let check take one decision of each user's agent)
 from fogbench.bench.reading.tables import AGENT
 from fogbench.bench.reading.worlds import Reading
 from fogbench.worlds.mistake import near, one_of
-from fogbench.worlds.reading.positions import Value
+from fogbench.worlds.reading.positions import Fault, Value
 from fogbench.worlds.types import AgentSettings
 
 NOWHERE = Fault(1, 1, "", "", "")
@@ -32,13 +27,10 @@ class Entry:
     settings: AgentSettings | None
     skipped: str
     """Why it does not run here; empty if it does."""
-<<<<<<< HEAD
-    files: tuple[Path, ...] = ()
-    """That its settings name."""
-=======
     named: Fault = NOWHERE
     """Where it is named; whoever finds something wrong with it says what was expected there."""
->>>>>>> 85befb5 (Let check take one decision of each user's agent)
+    files: tuple[Path, ...] = ()
+    """That its settings name."""
 
 
 class VariantReading(Reading[Page]):
@@ -72,11 +64,8 @@ class VariantReading(Reading[Page]):
         settings = cast(AgentSettings | None, self.block(found, block))
         kinds = cast(AgentSettings, found).kinds
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
-<<<<<<< HEAD
-        return Entry(label, place, settings, skipped, named_files(settings, self.folder)) if settings else None
-=======
-        return Entry(label, place, settings, skipped, wrong("", "")) if settings else None
->>>>>>> 85befb5 (Let check take one decision of each user's agent)
+        files = named_files(settings, self.folder)
+        return Entry(label, place, settings, skipped, wrong("", ""), files) if settings else None
 
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""

@@ -138,7 +138,10 @@ BROKEN = [
         "[2, 2]",
         "few",
         [
-            "10:36  learning.imitation.curriculum.easy.obstacles: got few; expected two whole numbers from 0 to 1,000,000."
+            (
+                "10:36  learning.imitation.curriculum.easy.obstacles: got few; "
+                "expected two whole numbers from 0 to 1,000,000."
+            ),
         ],
     ),
     ("{obstacles: [2, 2]}", "3", ["10:24  learning.imitation.curriculum.easy: got 3; expected a mapping."]),
