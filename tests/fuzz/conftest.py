@@ -72,7 +72,23 @@ ORDERS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e]")
 
 NUMBER = re.compile(rb"(?<![\w.])-?\d+(\.\d+)?")
 
-NUMBERS = [*range(-2, 4), 7, 64, 255, 256, 999, 65_536, 10**6, 10**9, 2**31, 2**32 - 1, 2**63 - 1, 2**63, 10**20, 10**400]
+NUMBERS = [
+    *range(-2, 4),
+    7,
+    64,
+    255,
+    256,
+    999,
+    65_536,
+    10**6,
+    10**9,
+    2**31,
+    2**32 - 1,
+    2**63 - 1,
+    2**63,
+    10**20,
+    10**400,
+]
 """Numbers that upset what counts or makes room."""
 
 COUNTS = pytest.StashKey[dict[str, int]]()

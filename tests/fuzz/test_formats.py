@@ -246,7 +246,9 @@ def test_the_hunt_finds_a_planted_fault(fault: str, hunt: Any, watched: Any, mon
         if "episodes" in text:
             return compose(text, loader)
         error = PLANTED[fault]
-        raise type(error)(*(word.replace("%.s.yaml", sys.argv[-1]) if isinstance(word, str) else word for word in error.args))
+        raise type(error)(
+            *(word.replace("%.s.yaml", sys.argv[-1]) if isinstance(word, str) else word for word in error.args)
+        )
 
     monkeypatch.setattr(yaml, "compose", broken)
     form = Format((GRID,), FORMATS["scenario"].files)
