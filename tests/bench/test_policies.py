@@ -201,7 +201,7 @@ def test_what_is_wrong_with_a_policy_is_told_at_its_place(
         "expected stitched False, with which the checkpoint was trained."
     )
     assert told("macn: {checkpoint: none, reads: 0}", tmp_path) == (
-        "6:37  agents[1].macn.reads: got 0; expected a whole number from 1 to 1024."
+        "6:37  agents[1].macn.reads: got 0; expected a whole number from 1 to 64."
     )
     assert told("macn: {checkpoint: none, read: 2}", tmp_path).endswith("Did you mean reads?")
     assert told("macn: {checkpoint: none, device: gpu}", tmp_path) == (
