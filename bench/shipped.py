@@ -43,7 +43,7 @@ def find_recipe(name: str) -> Path:
     if path.is_file():
         return path
     expected = f"a recipe file, or {one_of(shipped)}"
-    raise Mistake(f"{name}: got no such file; expected {expected}.{meant(near(name, shipped))}")
+    raise Mistake(f"{name}: no such file; give {expected}.{meant(near(name, shipped))}")
 
 
 def _pages(place: Path) -> list[Path]:
@@ -77,4 +77,4 @@ def _find_one(name: str) -> list[Path]:
     file = f"{name}.yaml"
     likely = file if Path(file).is_file() else near(name, shipped)
     expected = f"a scenario file, a folder of them, or {one_of(shipped)}"
-    raise Mistake(f"{name}: got no such file; expected {expected}.{meant(likely)}")
+    raise Mistake(f"{name}: no such file; give {expected}.{meant(likely)}")

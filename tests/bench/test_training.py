@@ -91,7 +91,7 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     code, _, err = train("macn-gird")
     assert code == 2
     assert err == (
-        f"macn-gird: got no such file; expected a recipe file, or one of {shipped}. Did you mean macn-grid?\n"
+        f"macn-gird: no such file; give a recipe file, or one of {shipped}. Did you mean macn-grid?\n"
     )
     Path("small.yaml").write_text(RECIPE.replace("batch: 2}}", "batch: two}}"))
     assert train("small.yaml")[::2] == (
