@@ -41,8 +41,9 @@ def _quiet() -> Iterator[None]:
 def _unadvised() -> Iterator[None]:
     """Matplotlib reads a settings file where it is imported, and the name of a backend: it finds its own, and none."""
     spec, backend = find_spec("matplotlib"), os.environ.pop("MPLBACKEND", None)
+    own = Path(spec.origin).with_name("mpl-data") if spec and spec.origin else Path()
     try:
-        with chdir(Path(spec.origin).with_name("mpl-data") if spec and spec.origin else "."):
+        with chdir(own if own.is_dir() else "."):
             yield
     finally:
         if backend is not None:

@@ -126,6 +126,18 @@ def test_tables_of_outdated_results_stay(fogbench: Fogbench) -> None:
     )
 
 
+def test_a_plot_that_cannot_be_written_costs_a_line(fogbench: Fogbench) -> None:
+    """After the tables, which are whole; the page does without it, and the exit code says that no agent crashed."""
+    write("small")
+    Path("results/small/success.png").mkdir(parents=True)
+    code, out, err = fogbench("run", "small.yaml")
+    line = "results/small/success.png: got IsADirectoryError: "
+    assert (code, err, out.count(line)) == (0, "", 1)
+    assert out.index("Results") < out.index(line)
+    page = Path("results/small/summary.md").read_text("utf-8")
+    assert ("(success.png)" in page, "(path_ratio.png)" in page) == (False, True)
+
+
 def test_labels_of_alike_words_have_files_of_their_own(fogbench: Fogbench) -> None:
     """Two that differ by punctuation, and one that is nothing else."""
     write("small", "[astar, memoryless: {label: a b}, frontier: {label: a-b}, random_walk: {label: '?'}]")

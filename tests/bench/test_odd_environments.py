@@ -161,3 +161,15 @@ def test_an_odd_place_for_what_is_printed(name: str, tmp_path: Path) -> None:
         ["bash", "-c", f"$FOGBENCH {line}"], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
     )
     assert (run.returncode, run.stderr) == (code, told)
+
+
+def test_without_matplotlib_there_are_tables(plain: pd.DataFrame, tmp_path: Path) -> None:
+    """One line says why there are no plots; only what is nothing but a plot ends with it."""
+    odd = Odd({}, {"matplotlib.py": b"raise RuntimeError('broken\\nby hand')"})
+    codes, out, err = play(tmp_path, odd)
+    line = "Matplotlib: got RuntimeError: broken; expected it to load: nothing is drawn."
+    assert list(codes.values()) == [0, 0, 2]
+    assert (out.count(line), err) == (2, f"{line}\n")
+    assert out.index("Results") < out.index(line)
+    pd.testing.assert_frame_equal(rows(tmp_path), plain)
+    assert "![" not in (tmp_path / "results/odd/summary.md").read_text("utf-8")
