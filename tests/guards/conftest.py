@@ -96,6 +96,11 @@ class Desk:
         path.write_text(text)
         return path
 
+    def append(self, name: str, text: str) -> None:
+        """Add to a file."""
+        path = self.folder / name
+        path.write_text(path.read_text() + text)
+
     def scenario(self, file: str = "s.yaml", **changes: Any) -> str:
         """Write a small scenario with changes; None removes a key."""
         page = {key: value for key, value in {**SMALL, **changes}.items() if value is not None}

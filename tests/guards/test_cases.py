@@ -89,9 +89,10 @@ def test_weights_of_a_planner_of_ones_own(desk: Any) -> None:
         fields="weights: MapFile",
         start="text = self.weights.read_text(); return BoldAgent(task.goal) if 'go' in text else Idle()",
     )
-    (desk.folder / "own.py").open("a").write(
+    desk.append(
+        "own.py",
         "\n\nclass Idle(BoldAgent):\n    def __init__(self):\n        pass\n\n"
-        "    def act(self, observation):\n        return None\n"
+        "    def act(self, observation):\n        return None\n",
     )
     desk.scenario(agents=["astar", {planner: {"weights": "w.txt"}}])
     for text, outcome in (("stay", "GAVE_UP"), ("go", "REACHED")):

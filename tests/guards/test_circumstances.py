@@ -83,7 +83,7 @@ def idle(desk: Any, run: Any) -> None:
 
 def edit(name: str, text: str) -> Step:
     """A file is saved again with something more."""
-    return lambda desk, run: (desk.folder / name).open("a").write(text) and None
+    return lambda desk, run: desk.append(name, text)
 
 
 def touch(desk: Any, run: Any) -> None:
