@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from fogbench.bench.playing.episode import SCHEMA, TIMINGS
-from fogbench.bench.playing.local import AHEAD
+from fogbench.bench.playing.pool import AHEAD
 from fogbench.bench.playing.store import read
 from fogbench.bench.reading.scenario import Scenario
 
