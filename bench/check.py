@@ -30,7 +30,9 @@ def check_all(paths: Sequence[Path]) -> None:
             say(f"  {name} is skipped: {reason}", console)
         refuse_idle(scenario)
 
-    each(_read_sound(paths), console, check)
+    with console.status("Drawing the first worlds, counting tasks"):
+        scenarios = _read_sound(paths)
+    each(scenarios, console, check)
 
 
 def _read_sound(paths: Sequence[Path]) -> list[Scenario]:

@@ -109,15 +109,15 @@ class Floor(NamedTuple):
 
     blocked: Array
     """[H, W] bool, read-only."""
-    bottom: int
-    """Rows of the image above its lower edge."""
+    height: int
+    """Rows of the image."""
     top: int
     """Rows of the image that were cut off above."""
     left: int
     """Columns of the image that were cut off to the left."""
     saved: int
     between: int
-    """Cells of the image; see `fogbench.worlds.maps.files.map_server.Occupancy`."""
+    """Cells of the image; see `fogbench.worlds.maps.files.map_server.Readings`."""
 
 
 @lru_cache(maxsize=16)
@@ -155,7 +155,7 @@ def _cell(place: Point | Cell, floor_: Floor, header: Header, downsample: int) -
     x, y, yaw = header.origin
     east, north = place.x - x, place.y - y
     right, up = east * cos(yaw) + north * sin(yaw), north * cos(yaw) - east * sin(yaw)
-    row = floor_.bottom - 1 - _count(up, header.resolution) - floor_.top
+    row = floor_.height - 1 - _count(up, header.resolution) - floor_.top
     return row // downsample, (_count(right, header.resolution) - floor_.left) // downsample
 
 

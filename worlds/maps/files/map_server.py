@@ -70,7 +70,7 @@ class Header(Settings):
     """Cells of a lower probability are free."""
 
 
-class Occupancy(NamedTuple):
+class Readings(NamedTuple):
     """What is known of the cells of an image."""
 
     free: Array
@@ -106,7 +106,7 @@ def read_header(path: Path, contents: bytes) -> Header:
     return header
 
 
-def occupancy(pixels: Pixels, header: Header) -> Occupancy:
+def occupancy(pixels: Pixels, header: Header) -> Readings:
     """Which cells of an image are free and which are occupied, by the rules of map_server, but for one.
 
     In mode trinary the shade that map_saver writes for unknown cells is unknown, whatever free_thresh says.
@@ -119,7 +119,7 @@ def occupancy(pixels: Pixels, header: Header) -> Occupancy:
     free, occupied = probability < header.free_thresh, probability > header.occupied_thresh
     known = 0 if header.mode == "trinary" else int(np.isfinite(probability).sum())
     between = max(0, known - int(free.sum()) - int(occupied.sum()))
-    return Occupancy(free, occupied, int(saved.sum()), between)
+    return Readings(free, occupied, int(saved.sum()), between)
 
 
 def _probability(pixels: Pixels, header: Header) -> Array:

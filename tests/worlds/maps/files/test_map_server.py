@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from fogbench.worlds.maps.files.image import Pixels, read_image
-from fogbench.worlds.maps.files.map_server import Header, Occupancy, occupancy, read_header
+from fogbench.worlds.maps.files.map_server import Header, Readings, occupancy, read_header
 from fogbench.worlds.types import Array, MapError
 
 YAML = """image: map.pgm
@@ -38,12 +38,12 @@ def header(folder: Path, text: str = "") -> Header:
     return read_header(folder / "x.yaml", "\n".join(f"{key}: {value}" for key, value in keys.items()).encode())
 
 
-def read(folder: Path, shade: Any, text: str = "", opacity: Any = None) -> Occupancy:
+def read(folder: Path, shade: Any, text: str = "", opacity: Any = None) -> Readings:
     """What the pixels of a row mean."""
     return occupancy(Pixels(np.array([shade]), None if opacity is None else np.array([opacity])), header(folder, text))
 
 
-def letters(told: Occupancy) -> str:
+def letters(told: Readings) -> str:
     """A row as text: `.` free, `#` occupied, `?` neither."""
     assert not (told.free & told.occupied).any()
     return "".join(np.where(told.free, ".", np.where(told.occupied, "#", "?"))[0])
