@@ -290,7 +290,7 @@ def _write_movingai(path: Path, blocked: Any, ends: Any) -> None:
     height, width = blocked.shape
     rows = "\n".join("".join(row) for row in np.where(blocked, "@", "."))
     path.write_text(f"type octile\nheight {height}\nwidth {width}\nmap\n{rows}\n")
-    lines = [f"0\tm.map\t{width}\t{height}\t{a[1]}\t{a[0]}\t{b[1]}\t{b[0]}\t9.0" for a, b in ends]
+    lines = [f"0\tone.map\t{width}\t{height}\t{a[1]}\t{a[0]}\t{b[1]}\t{b[0]}\t9.0" for a, b in ends]
     path.with_name(f"{path.name}.scen").write_text("\n".join(["version 1", *lines]) + "\n")
 
 
