@@ -39,6 +39,7 @@ MAPS = {
         MAP.replace(b"octile", b"tile"),
         "x:1:6  type: got 'tile'; expected octile, the only type that is read.",
     ),
+    "a separator behind a width": (MAP.replace(b"width 3", b"width 3\x1e"),),
     "no type": (MAP.replace(b"type octile\n", b""), "x:3:1  type: got nothing; expected it above 'map'."),
     "float height": (
         MAP.replace(b"height 2", b"height 2.0"),
@@ -110,6 +111,7 @@ SCENS = {
     "byte-order mark": (b"\xef\xbb\xbf" + TASK,),
     "spaces": (TASK.replace(b"\t", b"  "),),
     "version 1.0": (TASK.replace(b"n 1", b"n 1.0"),),
+    "a separator behind a number": (TASK.replace(b"\t3\t", b"\t3\x1e\t"),),
     "no tasks": (b"version 1\n",),
     "blank lines at the end": (TASK + b"\n\n",),
     "empty": (b"", "x:1:1  got nothing; expected 'version 1'."),

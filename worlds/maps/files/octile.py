@@ -60,15 +60,15 @@ def _header(lines: Sequence[str], faults: list[Fault]) -> dict[str, int]:
     """The words of the lines before `map`, each with its number; 0 where it has none, or a wrong one."""
     words = dict[str, int]()
     for number, line in enumerate(lines[: len(HEADER) + 1], 1):
-        word, value = [*line.split(None, 1), "", ""][:2]
+        word, value = (part.strip() for part in [*line.split(None, 1), "", ""][:2])
         if word not in HEADER or word in words:
             left = [repr(each) for each in HEADER if each not in words]
             faults.append(Fault(number, 1, "", quoted(line), " or ".join([*left, "'map'"])))
             continue
         words[word], column = 0, line.rfind(value) + 1
-        if word == "type" and value.strip() != "octile":
+        if word == "type" and value != "octile":
             faults.append(Fault(number, column, word, quoted(value), "octile, the only type that is read"))
-        elif word != "type" and not (WHOLE.fullmatch(value.strip()) and int(value)):
+        elif word != "type" and not (WHOLE.fullmatch(value) and int(value)):
             faults.append(Fault(number, column, word, quoted(value), SIZE))
         elif word != "type":
             words[word] = int(value)

@@ -50,7 +50,7 @@ def read_scen(path: Path, contents: bytes, shape: tuple[int, ...] | None) -> tup
 
 
 def _trip(number: int, line: str, shape: tuple[int, ...] | None, faults: list[Fault]) -> Trip | None:
-    fields = line.split("\t" if "\t" in line else None)
+    fields = [field.strip() for field in line.split("\t" if "\t" in line else None)]
     if len(fields) != 9:
         faults.append(Fault(number, 1, "", f"{len(fields)} fields", FIELDS))
         return None
@@ -67,7 +67,7 @@ def _odd_numbers(fields: Sequence[str], shape: tuple[int, ...] | None) -> list[t
     wrong = [
         (place, quoted(fields[place]), "a whole number from 0")
         for place in range(2, 8)
-        if not WHOLE.fullmatch(fields[place].strip())
+        if not WHOLE.fullmatch(fields[place])
     ]
     if wrong:
         return wrong
