@@ -161,15 +161,16 @@ def test_settings_that_cannot_be_hashed_play_like_others(fogbench: Fogbench) -> 
     assert fogbench("run", "listed.yaml")[0] == 0
 
 
-def test_what_cannot_be_played_is_told_before_anything_is(fogbench: Fogbench) -> None:
-    """With its place, by a check and by a run."""
+def test_what_cannot_be_played_is_told_before_anything_of_it_is(fogbench: Fogbench) -> None:
+    """With its place; a check says nothing else, a run plays the other scenarios."""
     write("fine")
     impossible = SMALL.format(name="bad", agents="[astar]") + "tasks: {distance: [90, 99]}\n"
     Path("bad.yaml").write_text(impossible)
-    reason = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps."
-    for command in ("check", "run"):
-        assert fogbench(command, "bad.yaml", "fine.yaml") == (2, "", f"bad.yaml:4:8  maps.blobs: {reason}\n")
-    assert not Path("results").exists()
+    told = "bad.yaml:4:8  maps.blobs: Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
+    assert fogbench("check", "bad.yaml", "fine.yaml") == (2, "", told)
+    code, out, err = fogbench("run", "bad.yaml", "fine.yaml")
+    assert (code, err, "2 were played now" in out) == (2, told, True)
+    assert not list(Path("results/bad/episodes").iterdir())
 
 
 @pytest.mark.parametrize(

@@ -90,9 +90,7 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     shipped = ", ".join(file.stem for file in sorted(RECIPES.glob("*.yaml")))
     code, _, err = train("macn-gird")
     assert code == 2
-    assert err == (
-        f"macn-gird: no such file; give a recipe file, or one of {shipped}. Did you mean macn-grid?\n"
-    )
+    assert err == (f"macn-gird: no such file; give a recipe file, or one of {shipped}. Did you mean macn-grid?\n")
     Path("small.yaml").write_text(RECIPE.replace("batch: 2}}", "batch: two}}"))
     assert train("small.yaml")[::2] == (
         2,

@@ -96,25 +96,6 @@ def test_a_stopped_training_goes_on_between_trials(tmp_path: Path, monkeypatch: 
     assert ended(Course(recipe(), tmp_path / "stopped", {})) == whole
 
 
-def test_a_state_with_percentages_becomes_one_with_shares(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One that an earlier version left ends as if it had been left by this one."""
-    monkeypatch.setattr(training, "SAVED_EVERY", 0.0)
-    whole = ended(Course(recipe(), tmp_path / "whole", {}))
-    course = Course(recipe(), tmp_path / "old", {})
-    next(news for news in course.go_on() if news.batches == 7)
-    state = torch.load(tmp_path / "old" / "state.pt", weights_only=True)
-    del state["shares"]
-    state["best"][1] *= 100
-    for trial in state["trials"]:
-        for score in trial["variants"].values():
-            score["test_error"] *= 100
-    torch.save(state, tmp_path / "old" / "state.pt")
-    again = ended(Course(recipe(), tmp_path / "old", {}))
-    assert again["weights"] == whole["weights"]
-    for ours, theirs in zip(again["trials"], whole["trials"], strict=True):
-        assert ours["variants"]["all"] == pytest.approx(theirs["variants"]["all"])
-
-
 def test_a_trial_tells_the_mean_loss_since_the_last(tmp_path: Path) -> None:
     """Of every batch in between, none twice."""
     course = Course(recipe(), tmp_path, {})
