@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fogbench.bench.check import read_sound
+from fogbench.bench.check import check_all
 from fogbench.bench.several import read_each
 from fogbench.bench.shipped import find
 from fogbench.worlds.mistake import Mistake
@@ -37,7 +37,7 @@ def mistakes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., l
 
     def told(*names: str) -> list[str]:
         with pytest.raises(Mistake) as caught:
-            read_sound(find(list(names)), None)
+            check_all(find(list(names)))
         return str(caught.value).splitlines()
 
     Path("lorr.map").write_text(MAP.format(".E.."))
@@ -77,7 +77,7 @@ def test_more_episodes_than_tasks_are_told(mistakes: Callable[..., list[str]]) -
         SCENARIO.replace("episodes: 1", "episodes: 5").replace("  third", "  # third").replace("  fourth", "  # fourth")
     )
     Path("many.yaml").write_text(text)
-    told = "got 5 episodes; only 1 task is usable, by the conditions."
+    told = f"{Path('ok.scen').absolute()}: got 1 task; expected 5, one for each episode."
     assert mistakes("many.yaml") == [f"many.yaml:6:18  variants.first.maps.movingai: {told}"]
 
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from fogbench.bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, film, known, strip, truth
+from fogbench.bench.drawing import AGENT, COLOURS, GOAL, PATH, SIDE, known, truth
+from fogbench.bench.film import film, strip
 from fogbench.bench.playing.play import lost, play
 from fogbench.bench.playing.replay import End, Moment, retrace, verify
 from fogbench.bench.reading.scenario import Scenario, Variant
@@ -27,6 +28,9 @@ Row = dict[str, Any]
 
 NOISE = {"false_readings": 0.1, "slip": 0.2, "slip_to": "sideways", "radius": 2}
 SMALL = "S.. .#. ..G"
+
+NAMES = {"agent": AGENT, "goal": GOAL}
+"""What some colours stand for."""
 
 
 @pytest.fixture
@@ -182,36 +186,37 @@ def test_marks_on_large_maps_are_large(scenario: Callable[..., Scenario], pictur
 def test_a_strip_is_as_high_as_its_maps(tmp_path: Path) -> None:
     """A map half as high as wide takes half the height."""
     flat = np.zeros((5, 10, 3), np.uint8)
-    strip([(flat, flat, 0)], "a title", tmp_path / "strip.png")
+    strip([(flat, flat, 0)], NAMES, "a title", tmp_path / "strip.png")
     with Image.open(tmp_path / "strip.png") as image:
-        assert image.size == (264, 330)
+        assert image.size == (528, 355)
 
 
 def test_a_strip_is_a_a_picture(moments: list[Moment], tmp_path: Path) -> None:
-    """A PNG that is as wide as it has moments."""
+    """A PNG that is as wide as it has moments, of two at least."""
     for count in (1, 4):
         strip(
             [(truth(p), known(p), n) for n, p in enumerate(pictures(moments[:count]))],
+            NAMES,
             "a title",
             tmp_path / "strip.png",
         )
         with Image.open(tmp_path / "strip.png") as image:
             image.load()
-            assert (image.format, image.size) == ("PNG", (264 * count, 594))
+            assert (image.format, image.size) == ("PNG", (264 * max(2, count), 619))
 
 
 def test_a_film_shows_every_step(moments: list[Moment], tmp_path: Path) -> None:
     """A GIF of 80 ms a step, the truth beside the known map; a step that changes nothing prolongs its frame."""
-    film([(truth(p), known(p), n) for n, p in enumerate(pictures(moments))], tmp_path / "film.gif")
+    film([(truth(p), known(p), n) for n, p in enumerate(pictures(moments))], NAMES, tmp_path / "film.gif")
     scale = SIDE // 3
     with Image.open(tmp_path / "film.gif") as image:
-        assert (image.format, image.size) == ("GIF", (7 * scale, 3 * scale))
+        assert (image.format, image.size) == ("GIF", (7 * scale, 3 * scale + 18))
         assert image.n_frames == 4
         lasts, agents = [], []
         for frame in range(image.n_frames):
             image.seek(frame)
             lasts.append(image.info["duration"])
-            cells = np.asarray(image.convert("RGB"))[scale // 2 :: scale, scale // 2 :: scale]  # [3, 7, RGB]
+            cells = np.asarray(image.convert("RGB"))[scale // 2 : 3 * scale : scale, scale // 2 :: scale]  # [3, 7, RGB]
             agents.append(np.argwhere((cells == AGENT).all(-1)).tolist())
     assert lasts == [80, 80, 160, 80]
     assert agents == [[[r, c], [r, c + 4]] for r, c in ((0, 0), (1, 0), (2, 0), (2, 1))]

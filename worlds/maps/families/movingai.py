@@ -118,7 +118,7 @@ class TaskList:
         """Why there are not as many tasks as wanted, after all were looked at."""
         fit, total = len(self.found), len(self.trips)
         if not self.unfit:
-            return f"got {total} tasks; expected {wanted}, one for each episode"
+            return f"got {total} {'task' if total == 1 else 'tasks'}; expected {wanted}, one for each episode"
         first = min(self.unfit)
         why = misfit(self.layout.blocked, first.start, first.goal, self.conditions)
         usable = f"only {fit} of {total} {'task is' if fit == 1 else 'tasks are'} usable"
