@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from fogbench.bench.playing.agenda import Agenda, Outcomes, outcomes
+from fogbench.bench.playing.agenda import Agenda
 from fogbench.bench.playing.crashes import Crashes
 from fogbench.bench.playing.enough import refuse_unplayable
 from fogbench.bench.playing.episode import Played
@@ -16,7 +16,7 @@ from fogbench.bench.playing.outdated import sort_rows
 from fogbench.bench.playing.pool import RunError
 from fogbench.bench.playing.provenance import noted
 from fogbench.bench.playing.recorder import recording
-from fogbench.bench.playing.store import WHO, read
+from fogbench.bench.playing.store import recorded
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Outcome
 
@@ -67,7 +67,7 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
     covariates = dict.fromkeys(name for variant in scenario.variants for name in variant.conditions.covariates)
     with recording(folder, tuple(covariates)) as recorder:
         sort_rows(folder, scenario)
-        expected, done = keys(scenario), _recorded(folder, scenario)
+        expected, done = keys(scenario), recorded(folder, scenario)
         counts = {pair: len(episodes) for pair, episodes in done.items()}
         totals = _totals(scenario)
         for pair, total in totals.items():
@@ -94,11 +94,6 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
                     take(played) if played else recorder.flush_if_due()
     summary.hung = {pair: count for pair in agenda.hung if (count := totals[pair] - counts[pair]) > 0}
     return summary
-
-
-def _recorded(folder: Path, scenario: Scenario) -> Outcomes:
-    rows = read(folder, scenario, (*WHO, "outcome")).groupby(WHO[:2], sort=False)
-    return {(str(v), str(a)): outcomes(group) for (v, a), group in rows}
 
 
 def _totals(scenario: Scenario) -> dict[tuple[str, str], int]:

@@ -6,13 +6,13 @@ enters nothing, and takes back those whose keys hold again: see `fogbench.bench.
 """
 
 from collections.abc import Sequence
-from itertools import chain
 from pathlib import Path
 
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from fogbench.bench.playing.agenda import outcomes
 from fogbench.bench.playing.episode import LATER, SCHEMA
 from fogbench.bench.playing.keys import Versions, keys
 from fogbench.bench.reading.scenario import Scenario
@@ -59,29 +59,23 @@ def read(folder: Path, scenario: Scenario, columns: Sequence[str], versions: Ver
 
 
 def _read(files: Sequence[Path], wanted: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
-    kept = list(dict.fromkeys([*WHO, *columns]))
-    tables = (load(part, list(dict.fromkeys([*kept, *KEYS]))) for part in files)
-    rows: pd.DataFrame = pd.concat(
-        [_rows(table, wanted, kept) for table in chain([SCHEMA.empty_table()], tables)], ignore_index=True
-    )
-    order = rows[[*WHO, "place"]].drop_duplicates(WHO).sort_values(["place", "episode"]).index
-    return rows.loc[order, list(columns)].reset_index(drop=True)  # long rows are copied only once
+    """Those rows of some parts that agree with `wanted` on the columns of both, once each."""
+    needed = list(dict.fromkeys([*WHO, *columns, *KEYS]))
+    tables = [SCHEMA.empty_table().select(needed), *(load(part, needed).select(needed) for part in files)]
+    rows = pa.concat_tables(tables).to_pandas(types_mapper=LISTS.get).merge(wanted)
+    told = rows.loc[rows["episode"] < rows["wanted"], [*WHO, "place"]].drop_duplicates(WHO)
+    order = told.sort_values(["place", "episode"]).index
+    return rows.loc[order, list(columns)].reset_index(drop=True)
 
 
-def _rows(table: pa.Table, wanted: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Those rows of a part that agree with `wanted` on the columns of both, without those that said so."""
-    frame = table.to_pandas(types_mapper=LISTS.get).merge(wanted)
-    found: pd.DataFrame = frame.loc[frame["episode"] < frame["wanted"], [*columns, "place"]]
-    return found
-
-
-def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], set[int]]:
-    """The recorded episodes of each variant and agent, by both names; pairs without any are left out.
+def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], dict[int, str]]:
+    """How the recorded episodes of each variant and agent ended, by their numbers; pairs without any are left out.
 
     Raises:
         StoreError: a file is broken.
     """
-    return _episodes(read(folder, scenario, WHO))
+    pairs = read(folder, scenario, (*WHO, "outcome")).groupby(WHO[:2], sort=False)
+    return {(str(variant), str(agent)): outcomes(rows) for (variant, agent), rows in pairs}
 
 
 def stale(folder: Path, scenario: Scenario, versions: Versions | None = None) -> dict[tuple[str, str], int]:
