@@ -34,13 +34,13 @@ MAPS = {
     "no line end at the end": (MAP.rstrip(),),
     "width before height": (MAP.replace(b"height 2\nwidth 3", b"width 3\nheight 2"),),
     "tab in the header": (MAP.replace(b"height 2", b"height\t2"),),
-    "empty": (b"", "x:1:1  got nothing; expected 'type' or 'height' or 'width' or 'map'.", f"x:2:1  {NO_MAP}"),
+    "empty": (b"", "x:1:1  missing; give 'type' or 'height' or 'width' or 'map'.", f"x:2:1  {NO_MAP}"),
     "other type": (
         MAP.replace(b"octile", b"tile"),
         "x:1:6  type: got 'tile'; expected octile, the only type that is read.",
     ),
     "a separator behind a width": (MAP.replace(b"width 3", b"width 3\x1e"),),
-    "no type": (MAP.replace(b"type octile\n", b""), "x:3:1  type: got nothing; expected it above 'map'."),
+    "no type": (MAP.replace(b"type octile\n", b""), "x:3:1  type: missing; give it above 'map'."),
     "float height": (
         MAP.replace(b"height 2", b"height 2.0"),
         "x:2:8  height: got '2.0'; expected a whole number from 1.",
@@ -49,10 +49,10 @@ MAPS = {
         MAP.replace(b"height 2", b"height two"),
         "x:2:8  height: got 'two'; expected a whole number from 1.",
     ),
-    "no width": (MAP.replace(b"width 3\n", b""), "x:3:1  width: got nothing; expected it above 'map'."),
+    "no width": (MAP.replace(b"width 3\n", b""), "x:3:1  width: missing; give it above 'map'."),
     "width of nothing": (
         MAP.replace(b"width 3", b"width"),
-        "x:3:6  width: got nothing; expected a whole number from 1.",
+        "x:3:6  width: missing; give a whole number from 1.",
     ),
     "negative width": (MAP.replace(b"width 3", b"width -3"), "x:3:7  width: got '-3'; expected a whole number from 1."),
     "zero width": (MAP.replace(b"width 3", b"width 0"), "x:3:7  width: got '0'; expected a whole number from 1."),
@@ -67,12 +67,12 @@ MAPS = {
     "twice a width": (
         MAP.replace(b"height 2", b"width 2"),
         "x:3:1  got 'width 3'; expected 'height' or 'map'.",
-        "x:4:1  height: got nothing; expected it above 'map'.",
+        "x:4:1  height: missing; give it above 'map'.",
     ),
     "foreign key": (
         MAP.replace(b"height", b"depth"),
         "x:2:1  got 'depth 2'; expected 'height' or 'width' or 'map'.",
-        "x:4:1  height: got nothing; expected it above 'map'.",
+        "x:4:1  height: missing; give it above 'map'.",
     ),
     "no map line": (MAP.replace(b"map\n", b""), "x:4:1  got '..@'; expected 'map'.", f"x:6:1  {NO_MAP}"),
     "short row": (MAP.replace(b"GST", b"GS"), "x:6:3  got 2 letters; expected 3, the width."),
@@ -114,7 +114,7 @@ SCENS = {
     "a separator behind a number": (TASK.replace(b"\t3\t", b"\t3\x1e\t"),),
     "no tasks": (b"version 1\n",),
     "blank lines at the end": (TASK + b"\n\n",),
-    "empty": (b"", "x:1:1  got nothing; expected 'version 1'."),
+    "empty": (b"", "x:1:1  missing; give 'version 1'."),
     "no version": (TASK[10:], "x:1:1  got '0\\tm.map\\t3\\t2\\t0\\t1\\t2\\t0\\t3.5'; expected 'version 1'."),
     "a column less": (
         TASK.replace(b"\t3.5", b""),
@@ -196,7 +196,7 @@ YAMLS = {
         YAML + b"x: " + b"[" * 300 + b"]" * 300 + b"\n",
         "x:7:104  got broken YAML (nested more than 100 deep); expected one YAML document.",
     ),
-    "no image": (YAML.replace(b"image: x\n", b""), "x:1:1  image: got nothing; expected a path."),
+    "no image": (YAML.replace(b"image: x\n", b""), "x:1:1  image: missing; give a path."),
     "an image that is not there": (
         YAML.replace(b"image: x", b"image: nosuch.pgm"),
         "x:1:8  image: got nosuch.pgm; expected an existing file (looked for DIR/nosuch.pgm).",
@@ -205,7 +205,7 @@ YAMLS = {
         YAML.replace(b"image: x", b"image: C:\\maps\\x.pgm"),
         r"x:1:8  image: got C:\maps\x.pgm; expected an existing file (looked for DIR/C:/maps/x.pgm).",
     ),
-    "image of nothing": (YAML.replace(b"image: x", b"image:"), "x:1:7  image: got nothing; expected a path."),
+    "image of nothing": (YAML.replace(b"image: x", b"image:"), "x:1:7  image: missing; give a path."),
     "a resolution of 0": (YAML.replace(b"0.1\n", b"0\n"), "x:2:13  resolution: got 0; expected a number above 0."),
     "a resolution without end": (
         YAML.replace(b"0.1\n", b".inf\n"),

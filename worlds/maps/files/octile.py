@@ -44,7 +44,7 @@ def read_map(path: Path, contents: bytes) -> Array:
     if len(head) == len(lines):
         faults.append(Fault(len(lines) + 1, 1, "", "no line 'map'", "it between the sizes and the rows"))
         refuse(path, faults)
-    faults += [Fault(len(head) + 1, 1, word, "nothing", "it above 'map'") for word in HEADER if word not in words]
+    faults += [Fault(len(head) + 1, 1, word, "", "it above 'map'") for word in HEADER if word not in words]
     rows, height, width = lines[len(head) + 1 :], words.get("height", 0), words.get("width", 0)
     faults += _odd_letters(rows, len(head) + 2)
     if height and width:

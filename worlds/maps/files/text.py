@@ -16,6 +16,6 @@ def lines_of(contents: bytes) -> list[str]:
 
 
 def quoted(text: str) -> str:
-    """A text in an error; nothing at all is told as such."""
+    """A text in an error; empty where there is none."""
     text = text.strip()
-    return repr(text[:SHOWN]) + ("..." if len(text) > SHOWN else "") if text else "nothing"
+    return repr(text[:SHOWN]) + ("..." if len(text) > SHOWN else "") if text else ""

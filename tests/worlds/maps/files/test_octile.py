@@ -57,7 +57,7 @@ def test_no_damage_ends_in_another_error(place: int, cut: int, put: bytes) -> No
         text = complaint(read, contents[:place] + put + contents[place + cut :])
         for line in text.splitlines():
             assert re.fullmatch(
-                r"x:[0-9]+:[0-9]+  (type: |height: |width: )?got .+; expected .+\.|x: [0-9]+ more mistakes\.", line
+                r"x:[0-9]+:[0-9]+  (\w+: )?(got .+; expected|missing; give) .+\.|x: [0-9]+ more .+", line
             )
 
 
