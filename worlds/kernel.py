@@ -143,7 +143,7 @@ class _Forms:
                 return
 
     def _file(self, folder: Path, signature: object, codegen: Any) -> Path:
-        options = [getattr(numba.config, option) for option in OPTIONS]
+        options = [int(getattr(numba.config, option) or 0) for option in OPTIONS]
         words = self.source, signature, numba_doors.processor(codegen), *options
         return folder / f"{self.name}-{digest(*words)[:16]}.nbc"
 

@@ -20,6 +20,7 @@ import yaml
 from PIL import Image
 
 import fogbench
+from fogbench.bench import several
 from fogbench.bench.reading.recipe import read_recipe
 from fogbench.bench.reading.scenario import text_of
 from fogbench.learned.checkpoint import SHIPPED
@@ -173,7 +174,6 @@ PLANTED = {
     "got exit code 2 with 0 lines": SystemExit(2),
     "a line without the file": Mistake("all: got nothing; expected something."),
     "a word of Python": Mistake("%.s.yaml: got KeyError: 'x'; expected a world."),
-    "a line that a terminal would obey": Mistake("%.s.yaml: got \x1b[31m; expected a name."),
     "MemoryError": MemoryError(),
 }
 """Faults of a reader, by a word of what the hunt says of them."""
@@ -240,17 +240,17 @@ def test_what_was_found_stays_mended(
 @pytest.mark.parametrize("fault", PLANTED)
 def test_the_hunt_finds_a_planted_fault(fault: str, hunt: Any, watched: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """A reader that fails where `episodes` is missing is found, whatever way it fails."""
-    compose = yaml.compose
+    reads = several.read_scenario
 
-    def broken(text: str, loader: Any) -> Any:
+    def broken(text: str, path: Path) -> Any:
         if "episodes" in text:
-            return compose(text, loader)
+            return reads(text, path)
         error = PLANTED[fault]
         raise type(error)(
             *(word.replace("%.s.yaml", sys.argv[-1]) if isinstance(word, str) else word for word in error.args)
         )
 
-    monkeypatch.setattr(yaml, "compose", broken)
+    monkeypatch.setattr(several, "read_scenario", broken)
     form = Format((GRID,), FORMATS["scenario"].files)
     with pytest.raises((Exception, SystemExit)) as caught:
         hunt("planted", form.seeds, lambda contents: attempt(form, watched, contents))

@@ -229,8 +229,8 @@ def test_a_command_that_was_stopped_goes_on(rude: Any, tmp_path: Path) -> None:
 
 
 def test_any_limit_can_be_waited_for(rude: Any, tmp_path: Path) -> None:
-    """As large as a number can be."""
-    assert list(rows(rude("none", hard_seconds=1e308), tmp_path / "store")["outcome"]) == ["REACHED"]
+    """As large as a limit can be."""
+    assert list(rows(rude("none", hard_seconds=1e6), tmp_path / "store")["outcome"]) == ["REACHED"]
 
 
 def test_who_hangs_first_is_not_asked_again(rude: Any, tmp_path: Path) -> None:

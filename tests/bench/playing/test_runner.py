@@ -13,11 +13,24 @@ from fogbench.bench.playing.episode import SCHEMA, TIMINGS
 from fogbench.bench.playing.local import RunError
 from fogbench.bench.playing.runner import Progress, run
 from fogbench.bench.playing.store import read
-from fogbench.bench.reading.scenario import Scenario
+from fogbench.bench.reading.scenario import Scenario, ScenarioError
 from fogbench.worlds.types import Outcome
 
 FACTS = [name for name in SCHEMA.names if name not in TIMINGS]
 """All columns but the timings."""
+
+
+SHORT = """
+from fogbench import MapError
+from fogbench.worlds.maps.families.blobs import Blobs
+
+
+class Short(Blobs):
+    def sample(self, rng, episode, conditions):
+        if episode == 7:
+            raise MapError("Short: no more maps")
+        return super().sample(rng, episode, conditions)
+"""
 
 
 def silent(progress: Progress) -> None:
@@ -101,14 +114,24 @@ def test_lost_episodes_keep_the_facts_of_their_world(make: Any, tmp_path: Path) 
 
 def test_a_world_that_cannot_be_made_stops_the_run(make: Any, tmp_path: Path) -> None:
     """The run ends with one line that names the variant, and what was recorded until then is kept."""
+    (tmp_path / "short.py").write_text(SHORT)
+    maps = {"./short.py:Short": {"size": 6, "obstacles": [2, 6], "obstacle_size": [1, 2]}}
+    short = make(maps=maps, episodes=9)
+    with pytest.raises(RunError, match=r"short, episode 7: Short: no more maps\.") as caught:
+        run(short, tmp_path / "store", 1, silent)
+    assert "\n" not in str(caught.value)
+    assert set(facts(short, tmp_path / "store")["episode"]) == set(range(7))
+
+
+def test_a_first_world_that_cannot_be_made_is_told_before_anything_is_played(make: Any, tmp_path: Path) -> None:
+    """In one line with the place of its maps."""
     budget = {"budget": {"steps": 100}}
     impossible = make(variants={"fine": budget, "far": {**budget, "tasks": {"distance": [90, 99]}}})
-    with pytest.raises(RunError) as caught:
+    with pytest.raises(ScenarioError) as caught:
         run(impossible, tmp_path / "store", 2, silent)
-    assert str(caught.value) == (
-        "far, episode 0: Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps."
-    )
-    assert set(facts(impossible, tmp_path / "store")["variant"]) == {"fine"}
+    told = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps."
+    assert str(caught.value) == f"{impossible.path}:4:3  maps.blobs: {told}"
+    assert facts(impossible, tmp_path / "store").empty
 
 
 def test_only_what_changed_runs_again(make: Any, tmp_path: Path) -> None:

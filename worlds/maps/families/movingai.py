@@ -121,7 +121,7 @@ class TaskList:
             return f"got {total} {'task' if total == 1 else 'tasks'}; expected {wanted}, one for each episode"
         first = min(self.unfit)
         why = misfit(self.layout.blocked, first.start, first.goal, self.conditions)
-        usable = f"only {fit} of {total} {'task is' if fit == 1 else 'tasks are'} usable"
+        usable = f"only {fit} of {total} tasks {'is' if fit == 1 else 'are'} usable"
         return f"{usable}, for {wanted} episodes: line {first.line}: {why}"
 
 
