@@ -1,5 +1,6 @@
 """What all settings share: frozen, nothing unknown allowed, and the few types their fields are made of."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -63,12 +64,17 @@ def whole(path: str | Path, info: ValidationInfo) -> Path:
     return Path(folder, path).absolute()
 
 
+LONGEST = 300
+"""Letters of a path that an error shows at most."""
+
+
 def _locate(path: Path, info: ValidationInfo) -> Path:
     if not info.context:
         return path
     place = whole(path, info)
-    if not place.exists():
-        raise ValueError(f"an existing file (looked for {place})")
+    if not os.path.exists(place):  # noqa: PTH110  it takes any path, however long
+        looked = str(place) if len(str(place)) <= LONGEST else f"{str(place)[:LONGEST]}..."
+        raise ValueError(f"an existing file (looked for {looked})")
     return place
 
 
