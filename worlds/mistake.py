@@ -35,6 +35,16 @@ def encodable(name: str) -> str:
     return name
 
 
+SHOWN = 60
+"""Letters of a value or a name that an error shows at most."""
+
+
+def shown(text: str) -> str:
+    """A value or a name as an error shows it: in one line, and cut."""
+    text = " ".join(text[: 10 * SHOWN].split())
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
 def near(name: str, names: Iterable[str]) -> str:
     """The name that is most like the given one; empty if none is."""
     return next(iter(get_close_matches(name, names, n=1)), "")
@@ -42,12 +52,12 @@ def near(name: str, names: Iterable[str]) -> str:
 
 def one_of(names: Iterable[str]) -> str:
     """What is expected where one of some names is."""
-    return f"one of {', '.join(names)}"
+    return f"one of {', '.join(map(shown, names))}"
 
 
 def meant(name: str) -> str:
     """The end of a text that proposes a name; empty without one."""
-    return f" Did you mean {name}?" if name else ""
+    return f" Did you mean {shown(name)}?" if name else ""
 
 
 def unknown(place: str, got: str, names: Iterable[str]) -> Mistake:

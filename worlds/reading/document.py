@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import yaml
 
-from fogbench.worlds.reading.positions import SHOWN, Fault, Spot, Value, join, shown
+from fogbench.worlds.mistake import SHOWN, shown
+from fogbench.worlds.reading.positions import Fault, Spot, Value, join
 
 VARIABLE = re.compile(r"\$\{(\w+)\}")
 """`${NAME}`: the environment variable of that name."""

@@ -8,10 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from fogbench.worlds.mistake import meant
-
-SHOWN = 60
-"""Characters of a value or a key that an error shows at most."""
+from fogbench.worlds.mistake import meant, shown
 
 
 class Fault(NamedTuple):
@@ -105,12 +102,6 @@ class Value:
 def join(path: str, key: str) -> str:
     """The path of a key of the mapping at `path`."""
     return f"{path}.{shown(key)}" if path else shown(key)
-
-
-def shown(text: str) -> str:
-    """A value or a key as an error shows it: in one line, and cut."""
-    text = " ".join(text[: 10 * SHOWN].split())
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def merge(base: Value, over: Value) -> Value:
