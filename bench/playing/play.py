@@ -144,7 +144,7 @@ def _sentence(error: BaseException, settings: AgentSettings) -> str:
     except Exception:  # noqa: BLE001  it is the agent's own class
         text = "no text"
     text = text.encode("utf-8", "backslashreplace").decode()  # a lone surrogate cannot be stored
-    return f"{type(error).__name__}: {text if len(text) <= TOLD else text[:TOLD] + '...'}{place}"
+    return f"{' '.join(type(error).__name__.split())}: {text if len(text) <= TOLD else text[:TOLD] + '...'}{place}"
 
 
 def _traceback(error: BaseException) -> str:
