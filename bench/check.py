@@ -38,8 +38,9 @@ def check_all(paths: Sequence[Path]) -> None:
 def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
     """Read scenario files, and draw a world of every variant."""
     scenarios, errors = read_each(paths, None)
-    lines = [line for error in errors for line in (*error.lines, *mistakes(error.rest.variants if error.rest else ()))]
-    lines += [line for scenario in scenarios for line in mistakes(scenario.variants)]
+    lines = [line for error in errors for line in error.lines]
+    for scenario in (*(error.rest for error in errors if error.rest), *scenarios):
+        lines += mistakes(scenario.path, scenario.variants)
     if lines:
         raise ScenarioError(lines)
     return scenarios

@@ -88,7 +88,8 @@ def run(scenario: Scenario, folder: Path, workers: int, watch: Callable[[Progres
 
         unfinished = {pair: total - counts[pair] for pair, total in totals.items() if pair not in agenda.hung}
         if left := sum(unfinished.values()):
-            refuse_unplayable(v for v in scenario.variants if any(unfinished.get((v.name, e.label)) for e in v.agents))
+            names = {variant for (variant, _), count in unfinished.items() if count}
+            refuse_unplayable(scenario.path, [each for each in scenario.variants if each.name in names])
             with noted(folder, scenario, min(workers, left)):
                 for played in play_here(scenario, agenda, min(workers, left)):
                     take(played) if played else recorder.flush_if_due()

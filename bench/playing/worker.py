@@ -76,7 +76,7 @@ def _answer(call: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
         return error.within(place)
     except ClerkError as error:
         return f"{place}: {error}."
-    except Exception as error:  # noqa: BLE001  it is told where somebody can read it
+    except BaseException as error:  # noqa: BLE001  it is told where somebody can read it
         told = f"got {type(error).__name__}: {error}; expected no error but an agent's"
         return f"{place}, {arguments[1]}: {told}."
 

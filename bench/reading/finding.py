@@ -4,16 +4,18 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from fogbench.bench.reading.page import blocks
 from fogbench.bench.reading.plugins import PluginError, load, load_conditions, load_kind, target
 from fogbench.bench.reading.tables import FAMILY, KIND, Table
 from fogbench.worlds.mistake import Unavailable, near
-from fogbench.worlds.reading.blocks import Block, read_block
+from fogbench.worlds.reading.blocks import Block, raised, read_block
 from fogbench.worlds.reading.positions import Fault, Value, join
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import MapFamily
+
+Answer = TypeVar("Answer")
 
 Wrong = Callable[[str, str], Fault]
 """From what was expected, and the nearest name, to a fault."""
@@ -33,6 +35,14 @@ class Finder:
     def block(self, settings: type[Block], value: Value) -> Block | None:
         """A block of the page."""
         return read_block(settings, value, self.around, self.faults)
+
+    def asked(self, question: Callable[[], Answer], otherwise: Answer, wrong: Wrong) -> Answer:
+        """What settings of a user's answer; what they raise is a fault."""
+        try:
+            return question()
+        except Exception as error:  # noqa: BLE001  a user's class may raise anything
+            self.faults.append(wrong(f"settings that can be asked; they raise {raised(error)}", ""))
+            return otherwise
 
     def named(self, item: Value, expected: str) -> tuple[str, Value, Wrong] | None:
         """A name, its settings, and what tells that the name is wrong; None where that is not what stands there."""
@@ -85,7 +95,7 @@ class Finder:
         possible = cast(MapFamily, family).kinds if family else tuple(KIND.targets())
         if not (isinstance(possible, tuple) and possible and all(isinstance(kind, str) for kind in possible)):
             told = f"a map family whose kinds are a tuple of names; this one has {possible!r}"
-            self.faults.append(_of_family(page, told))
+            self.faults.append(of_family(page, told))
             return "", None
         said = page.child("kind")
         name = str(said.content) if said and said.content and not said.unset else possible[0]
@@ -99,14 +109,14 @@ class Finder:
             return name, load_conditions(name, kind)
         except PluginError as error:
             told = f"a map family of the kind {' or '.join(KIND.targets())}; this one is of {name!r}"
-            unknown = _of_family(page, told if name not in KIND.targets() else str(error))
+            unknown = of_family(page, told if name not in KIND.targets() else str(error))
             self.faults.append(said.wrong(str(error), error.near) if said else unknown)
         except Unavailable as error:
             self.skipped = f"{name} {error}"
         return name, None
 
 
-def _of_family(page: Value, expected: str) -> Fault:
+def of_family(page: Value, expected: str, _near: str = "") -> Fault:
     """What is wrong with the map family of a page, at its name."""
     maps = page.fields().get("maps")
     return maps.wrong_key(next(iter(maps.fields())), expected) if maps and maps.fields() else page.wrong(expected)

@@ -118,7 +118,9 @@ def _import(name: str, place: str) -> ModuleType:
         if error.filename != place:
             raise PluginError(_importable(error)) from None
         raise PluginError(f"an existing file (looked for {place})") from None
-    except (Exception, SystemExit) as error:  # noqa: BLE001  a user's file may raise anything
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001  a user's file may raise anything
         raise PluginError(_importable(error)) from None
 
 

@@ -1,5 +1,6 @@
 """The reading of one variant: its map family, its conditions, its agents."""
 
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
@@ -63,9 +64,14 @@ class VariantReading(Reading[Page]):
             return Entry(label, place, None, missing, wrong("", "")) if missing else None
         settings = cast(AgentSettings | None, self.block(found, block))
         kinds = cast(AgentSettings, found).kinds
+        if not (isinstance(kinds, AbstractSet) and all(isinstance(kind, str) for kind in kinds)):
+            self.faults.append(wrong(f"an agent whose kinds are a frozenset of names; this one has {kinds!r}", ""))
+            return None
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
-        files = named_files(settings, self.folder)
-        return Entry(label, place, settings, skipped, wrong("", ""), files) if settings else None
+        files = self.asked(lambda: named_files(settings, self.folder), None, wrong) if settings else None
+        return (
+            None if settings is None or files is None else Entry(label, place, settings, skipped, wrong("", ""), files)
+        )
 
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""

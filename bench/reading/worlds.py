@@ -1,10 +1,11 @@
 """What scenarios and recipes have in common: the keys of a page, a map family, a kind of world and its conditions."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar, cast
 
-from fogbench.bench.reading.finding import Finder
+from fogbench.bench.reading.finding import Finder, of_family
 from fogbench.bench.reading.page import blocks, with_blocks
 from fogbench.worlds.reading.positions import Value
 from fogbench.worlds.settings import Settings
@@ -24,7 +25,7 @@ class Reading(Finder, Generic[Keys]):
         self.page = cast(Keys | None, self.block(with_blocks(keys, conditions), page))
         self.family = cast(MapFamily | None, self.block(*found)) if found else None
         own = self.family if self.family and self.kind in self.family.kinds else None  # its extents are of its kinds
-        self.around["extent"] = own.extent() if own else None
+        self.around["extent"] = self.asked(own.extent, None, partial(of_family, page)) if own else None
         self.conditions = self._conditions(conditions, page)
 
     def _conditions(self, conditions: type[Settings] | None, page: Value) -> Settings | None:
