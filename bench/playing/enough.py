@@ -1,6 +1,7 @@
 """Whether the variants of a scenario can be played: what a run begins with is tried, and nothing is recorded."""
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 from fogbench.bench.playing.guests import drawn
@@ -26,7 +27,7 @@ def mistakes(path: Path, variants: Iterable[Variant]) -> Iterator[str]:
     """What is wrong with variants of a scenario, in lines, each once."""
     told = dict[str, None]()
     for variant in variants:
-        told |= dict.fromkeys(_blamed(variant.place, lambda variant=variant: _try(variant)))
+        told |= dict.fromkeys(_blamed(variant.place, partial(_try, variant)))
         for entry in variant.agents:
             told |= dict.fromkeys(_unknown(path, entry))
     yield from told

@@ -65,7 +65,8 @@ def _read(files: Sequence[Path], wanted: pd.DataFrame, columns: Sequence[str]) -
     rows = pa.concat_tables(tables).to_pandas(types_mapper=LISTS.get).merge(wanted)
     told = rows.loc[rows["episode"] < rows["wanted"], [*WHO, "place"]].drop_duplicates(WHO)
     order = told.sort_values(["place", "episode"]).index
-    return rows.loc[order, list(columns)].reset_index(drop=True)
+    found: pd.DataFrame = rows.loc[order, list(columns)].reset_index(drop=True)  # long rows are copied only here
+    return found
 
 
 def recorded(folder: Path, scenario: Scenario) -> dict[tuple[str, str], dict[int, str]]:

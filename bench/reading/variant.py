@@ -69,9 +69,9 @@ class VariantReading(Reading[Page]):
             return None
         skipped = "" if self.kind in kinds else f"it plays {', '.join(sorted(kinds))} worlds, not {self.kind}"
         files = self.asked(lambda: named_files(settings, self.folder), None, wrong) if settings else None
-        return (
-            None if settings is None or files is None else Entry(label, place, settings, skipped, wrong("", ""), files)
-        )
+        if settings is None or files is None:
+            return None
+        return Entry(label, place, settings, skipped, wrong("", ""), files)
 
     def _label(self, name: str, item: Value, block: Value) -> tuple[str, Value]:
         """The label of an agent, and its settings without it."""
