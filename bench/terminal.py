@@ -56,6 +56,7 @@ def _end(code: int, text: str = "") -> NoReturn:
 
 def _drop(stream: TextIO | None) -> None:
     with suppress(OSError, AttributeError):  # one in memory has no number
+        number = stream.fileno()  # type: ignore[union-attr]  # or none
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, stream.fileno())  # type: ignore[union-attr]  # or none
+        os.dup2(nowhere, number)
         os.close(nowhere)
