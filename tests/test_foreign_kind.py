@@ -186,13 +186,13 @@ def test_a_mistake_names_the_blocks_of_the_kind(old: str, new: str, expected: st
 @pytest.mark.parametrize(
     ("file", "old", "new", "expected"),
     [
-        ("judge.py", "right.any():", "right.all(0)[9]:", "ring, episode 0: the judge raised IndexError: "),
+        ("judge.py", "right.any():", "right.all(0)[9]:", ": the judge raised IndexError: "),
         ("judge.py", "class RingJudge", "class Judge", "fogbench.judges: ring: got ring_kind.judge:RingJudge, which "),
         ("stations.py", '("ring",)', '"ring"', "a map family whose kinds are a tuple of names; this one has 'ring'"),
         ("conditions.py", "budget: BudgetSettings", "limit: int = 9", "whose conditions have a budget; those of ring "),
         ("conditions.py", '("stations",)', '("steps",)', "covariates: got steps; expected names that no column has."),
         ("conditions.py", '("stations",)', "()", "covariates: got stations; expected none"),
-        ("world.py", "def remaining", "def rest", "ring, episode 0: the world, asked what remains to the goal"),
+        ("world.py", "def remaining", "def rest", ": the world, asked what remains to the goal"),
     ],
 )
 def test_a_mistake_in_the_package_is_blamed_on_it(

@@ -22,6 +22,9 @@ from fogbench.worlds.types import AgentSettings, Outcome, World
 TOLD = 300
 """Characters of an agent's error that a row holds at most."""
 
+LONGEST = 100_000
+"""Characters of a traceback at most."""
+
 
 class Rehearsed(NamedTuple):
     """A decision on a throw-away task."""
@@ -140,7 +143,7 @@ def _sentence(error: BaseException, settings: AgentSettings) -> str:
     own = [frame for frame in extract_tb(error.__traceback__) if frame.filename == getfile(type(settings))]
     place = f" ({own[-1].name}, line {own[-1].lineno})" if own else ""
     try:
-        text = " ".join(str(error).split()) or "no text"
+        text = " ".join(str(error)[: 10 * TOLD].split()) or "no text"
     except Exception:  # noqa: BLE001  it is the agent's own class
         text = "no text"
     text = text.encode("utf-8", "backslashreplace").decode()  # a lone surrogate cannot be stored
@@ -148,7 +151,8 @@ def _sentence(error: BaseException, settings: AgentSettings) -> str:
 
 
 def _traceback(error: BaseException) -> str:
-    return "".join(format_exception(error)).encode("utf-8", "backslashreplace").decode()
+    text = "".join(format_exception(error))
+    return text[:LONGEST].encode("utf-8", "backslashreplace").decode()
 
 
 def _episode(scenario: Scenario, variant: Variant, entry: Entry, episode: int, workers: int, record: Record) -> Episode:

@@ -126,7 +126,7 @@ def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...
 def _rated(frame: pd.DataFrame) -> pd.DataFrame:
     """Without the episodes of agents that were given up: nobody knows their rates."""
     given_up = [rows.index for _, rows in frame.groupby(["variant", "agent"]) if is_given_up(outcomes(rows))]
-    return frame.drop(index=[row for rows in given_up for row in rows])
+    return frame.drop(index=[row for rows in given_up for row in rows]) if given_up else frame  # it may be large
 
 
 def _cell(frame: pd.DataFrame, variant: str, agent: str) -> pd.DataFrame:

@@ -166,7 +166,8 @@ def test_an_odd_place_for_what_is_printed(name: str, tmp_path: Path) -> None:
 def test_without_matplotlib_there_are_tables(plain: pd.DataFrame, tmp_path: Path) -> None:
     """One line says why there are no plots; only what is nothing but a plot ends with it."""
     (tmp_path / "matplotlib").mkdir()
-    odd = Odd({}, {"matplotlib/__init__.py": b"raise RuntimeError('broken\\nby hand')"})
+    first = os.pathsep.join([str(tmp_path), str(Path(fogbench.__file__).parents[1])])
+    odd = Odd({"PYTHONPATH": first}, {"matplotlib/__init__.py": b"raise RuntimeError('broken\\nby hand')"})
     codes, out, err = play(tmp_path, odd)
     line = "Matplotlib: got RuntimeError: broken; expected it to load: nothing is drawn."
     assert list(codes.values()) == [0, 0, 2]

@@ -21,7 +21,7 @@ time.time = lambda: truth() + (float(os.environ["JUMP"]) if monotonic() - began 
 """
 """A `sitecustomize` in which the system's clock takes a step."""
 
-SLOW = "import time; time.sleep(0.05); open(LOG, 'a').write('x')"
+SLOW = "import time; time.sleep(0.05)\nwith open(LOG, 'a') as log: log.write('x')"
 TOP = "import os, random, numpy\nLOG = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'log')"
 LUCKY = "return random.choice(free) if numpy.random.random() < 0.2 else min(free, key=near)"
 
@@ -116,7 +116,9 @@ ODD = {
     "planner edited": Odd(meanwhile=edit("slow.py", "\n\nMORE = 1\n"), refusal="slow.py"),
     "planner saved": Odd(meanwhile=touch),
     "map edited": Odd(meanwhile=edit("a.map", "............\n"), refusal="a.map"),
-    "tasks edited": Odd(meanwhile=edit("a.map.scen", "0\ta.map\t12\t8\t9\t0\t0\t0\t9\n"), refusal="a.map.scen"),
+    "tasks edited": Odd(
+        meanwhile=edit("a.map.scen", "0\ta.map\t12\t8\t9\t0\t0\t0\t9\n"), refusal="got other sources, files or packages"
+    ),
     "scenario edited": Odd(meanwhile=edit("s.yaml", "seed: 5\n"), refusal="s.yaml"),
     "scenario removed": Odd(meanwhile=remove, refusal="s.yaml"),
     "run twice": Odd(meanwhile=second),

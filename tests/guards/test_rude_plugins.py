@@ -207,7 +207,7 @@ REFUSED = {
 }
 """Files that `check` refuses, by their names; those of maps begin with `maps`."""
 
-LIMIT = {"steps": 60, "hard_seconds": 3}
+LIMIT = {"steps": 60, "hard_seconds": 6}
 
 HEALTHY = ["variant", "agent", "episode"]
 
