@@ -84,12 +84,12 @@ RUDE = {
     "aborts": Rude(CRASHED, "SIGABRT", "import os; os.abort()"),
     "segfaults": Rude(CRASHED, "SIGSEGV", "import ctypes; ctypes.string_at(0)"),
     "kills_its_group": Rude(CRASHED, "SIG", "import os; os.killpg(os.getpgrp(), 15)"),
-    "stops_itself": Rude(HUNG, "3 s", "import os; os.kill(os.getpid(), 19)"),
-    "loops": Rude(HUNG, "3 s", "while True: pass"),
-    "sleeps": Rude(HUNG, "3 s", "import time; time.sleep(1e6)"),
-    "holds_the_lock": Rude(HUNG, "3 s", "import collections, itertools; collections.deque(itertools.repeat(0), 0)"),
+    "stops_itself": Rude(HUNG, "6 s", "import os; os.kill(os.getpid(), 19)"),
+    "loops": Rude(HUNG, "6 s", "while True: pass"),
+    "sleeps": Rude(HUNG, "6 s", "import time; time.sleep(1e6)"),
+    "holds_the_lock": Rude(HUNG, "6 s", "import collections, itertools; collections.deque(itertools.repeat(0), 0)"),
     "is_deaf": Rude(
-        HUNG, "3 s", "import signal, time; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; time.sleep(1e6)"
+        HUNG, "6 s", "import signal, time; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; time.sleep(1e6)"
     ),
     "closes_all": Rude(LOST, "", "import os; os.closerange(3, 256)"),
     "has_a_twin": Rude(EITHER | HUNG, "", "import os; observation.step or os.fork()"),
@@ -105,7 +105,7 @@ RUDE = {
     ),
     "starts_a_program": Rude(FINE, "", "import subprocess; subprocess.Popen(['sleep', '4321'])"),
     "has_a_pool": Rude(
-        FINE,
+        FINE | HUNG,  # one before it may have left threads, and a fork with threads may hang
         "",
         "import multiprocessing\nif not observation.step:\n    with multiprocessing.Pool(1) as p: p.map(abs, [1])",
     ),
