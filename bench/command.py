@@ -23,8 +23,8 @@ app = typer.Typer(
     add_completion=False,
 )
 
-DONE, CRASHED, WRONG, STOPPED = 0, 1, 2, 130
-"""Exit codes: done; finished, but an agent crashed or hung; the command or a file was wrong; stopped by Ctrl-C."""
+DONE, CRASHED, STOPPED = 0, 1, 130
+"""Exit codes: done; finished, but an agent crashed or hung; stopped by Ctrl-C. `terminal` has those of mistakes."""
 
 
 class Device(StrEnum):

@@ -49,7 +49,7 @@ def run_all(paths: Sequence[Path], episodes: int | None, workers: int | None, re
         Whether an agent crashed or hung, now or in the episodes that were recorded before.
 
     Raises:
-        ScenarioError: all the mistakes in the files and in the maps that they name; nothing was played.
+        ScenarioError: all the mistakes in the files; nothing was played.
         Mistake: the workers are too many, or some scenarios could not be run; the others were.
     """
     console, most = Console(), EACH * cpus()

@@ -19,10 +19,10 @@ PAUSE, SHARE = 1.0, 0.01
 
 
 class Recorder:
-    """Appends episodes to a store. A part is written whole or not at all, and never touched again."""
+    """Appends episodes to a store. A part is written whole or not at all; only what sorts rows touches it again."""
 
     def __init__(self, folder: Path, covariates: Sequence[str]) -> None:
-        """Go on after the last part that is there."""
+        """`folder` is that of the store."""
         self.covariates = covariates
         self.folder = folder
         self.rows: list[Episode] = []
