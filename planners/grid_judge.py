@@ -1,7 +1,7 @@
 """Right and wrong on a grid: every move that begins a shortest path on the agent's own known map is right."""
 
 from fogbench.planners.astar import AStarAgent
-from fogbench.planners.judging import NOT_JUDGED, Verdict
+from fogbench.planners.judging import Verdict
 from fogbench.planners.optimal import OptimalMoves
 from fogbench.worlds.grid.world import GridWorld, to_goal
 from fogbench.worlds.maps.cells import KnownMap
@@ -42,10 +42,10 @@ class GridJudge:
 
     def judge(self, action: Move) -> Verdict:
         """The verdict on a move; once for every observation, since the reference follows its path."""
-        right, expected = self.optimal.moves(self.observation.place), self.reference.follow(self.observation)
-        if not right.any():
-            return NOT_JUDGED
-        return Verdict(judged=True, wrong=not right[action], strictly_wrong=action is not expected)
+        expected = self.reference.follow(self.observation)
+        right: list[bool] = self.optimal.moves(self.observation.place).tolist()
+        judged = any(right)
+        return Verdict(judged, judged and not right[action], judged and action is not expected)
 
 
 class Hindsight(GridJudge):

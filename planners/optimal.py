@@ -22,7 +22,7 @@ class OptimalMoves:
 
     def see(self, touched: Array) -> None:
         """Take note of the cells `touched` [n] (flat indices), whose reading has changed."""
-        if matters(self.known, touched, self.distance, self.settled):
+        if len(touched) and matters(self.known, touched, self.distance, self.settled):
             self.settled = -1
 
     def moves(self, place: Cell) -> Array:

@@ -37,6 +37,7 @@ def named(table: Mapping[str, Any], group: str, name: str) -> Any | None:
     return imported(found, f"{group}: {name}") if isinstance(found, str) else found
 
 
+@cache
 def imported(target: str, place: str) -> Any:
     """What stands at `module:object`.
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def numbers(action: Any) -> tuple[float, ...]:
     """An action as a row has it."""
-    return tuple(float(x) for x in (action if isinstance(action, tuple) else (action,)))
+    return tuple(map(float, action)) if isinstance(action, tuple) else (float(action),)
 
 
 @lru_cache(maxsize=16)

@@ -69,12 +69,10 @@ class GridWorld:
             stopped = not passable(self.blocked, *ahead)
             place = place if stopped else ahead
         witnessed = state.witnessed or self._witnesses(place)
-        return Step(
-            GridState(state.step + 1, place, stopped, witnessed),
-            length=float(place != state.place),
-            collided=stopped and not slipped and self.rules.collision == "fails",
-            reached=witnessed and place == self.task.goal,
-        )
+        length = float(place != state.place)
+        collided = stopped and not slipped and self.rules.collision == "fails"
+        reached = witnessed and place == self.task.goal
+        return Step(GridState(state.step + 1, place, stopped, witnessed), length, collided, reached)
 
     def shortest(self) -> float:
         """Length of the optimal path on the full map [cells]; a tunnel's end wall need not be seen on it."""
