@@ -15,15 +15,14 @@ from fogbench.worlds.types import Noted
 
 
 def check_all(paths: Sequence[Path]) -> None:
-    """Say what a run would play, after drawing one world of every variant.
+    """Say what a run would play, after drawing one world of every variant, and one decision of each user's agent.
 
     Raises:
-        ScenarioError: all the mistakes in all the files, and in the maps that they name.
+        ScenarioError: all the mistakes in all the files, in the maps that they name, and of users' agents.
     """
     console = Console()
 
     def check(scenario: Scenario) -> None:
-        _rehearse(scenario)
         for line in chain.from_iterable(_outlook(variant) for variant in scenario.variants):
             say(line, console)
         for name, reason in scenario.left_out.items():
@@ -36,27 +35,28 @@ def check_all(paths: Sequence[Path]) -> None:
 
 
 def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
-    """Read scenario files, and draw a world of every variant."""
+    """Read scenario files, draw a world of every variant, and let users' agents decide where all else is right."""
     scenarios, errors = read_each(paths, None)
     lines = [line for error in errors for line in error.lines]
-    for scenario in (*(error.rest for error in errors if error.rest), *scenarios):
-        lines += mistakes(scenario.path, scenario.variants)
+    for rest in (error.rest for error in errors if error.rest):
+        lines += mistakes(rest.path, rest.variants)
+    for scenario in scenarios:
+        lines += [*mistakes(scenario.path, scenario.variants)] or _rehearsed(scenario)
     if lines:
         raise ScenarioError(lines)
     return scenarios
 
 
-def _rehearse(scenario: Scenario) -> None:
-    """Let each user's agent take one decision.
+def _rehearsed(scenario: Scenario) -> list[str]:
+    """What is wrong with the decision of each user's agent, in lines."""
+    if not guests(scenario):
+        return []
+    from fogbench.bench.playing.rehearsal import rehearsed  # noqa: PLC0415  it starts processes, and is slow
 
-    Raises:
-        Mistake: some cannot.
-    """
-    if guests(scenario):
-        from fogbench.bench.playing.rehearsal import rehearsed  # noqa: PLC0415  it starts processes, and is slow
-
-        if lines := rehearsed(scenario):
-            raise Mistake("\n".join(lines))
+    try:
+        return rehearsed(scenario)
+    except Mistake as mistake:
+        return str(mistake).splitlines()
 
 
 def notes(variant: Variant) -> Sequence[str]:

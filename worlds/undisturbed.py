@@ -10,10 +10,13 @@ import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import cache
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TextIO, cast
+
+STREAMS = ("stdin", "stdout", "stderr")
 
 SIGNALS = ("SIGHUP", "SIGINT", "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGPIPE", "SIGALRM", "SIGTERM", "SIGCHLD", "SIGTSTP")
 
@@ -61,6 +64,38 @@ def _handle(_: ModuleType, handlers: dict[str, Any]) -> None:
             signal.signal(getattr(signal, name), handler)
 
 
+@cache
+def _spare(number: int) -> int:
+    """Another number for what a standard stream of this process was, when first asked."""
+    return os.dup(number)
+
+
+def _streams(module: ModuleType) -> list[tuple[Any, bool, tuple[int, int] | None]]:
+    """The standard streams: each with whether it is closed, and which file stands behind its number."""
+    streams = [getattr(module, name) for name in STREAMS]
+    return [(stream, getattr(stream, "closed", True), _file(number)) for number, stream in enumerate(streams)]
+
+
+def _file(number: int) -> tuple[int, int] | None:
+    """What identifies an open file; None if it is closed."""
+    with suppress(OSError):
+        _spare(number)
+        found = os.fstat(number)
+        return found.st_dev, found.st_ino
+    return None
+
+
+def _open_streams(module: ModuleType, was: list[tuple[Any, bool, tuple[int, int] | None]]) -> None:
+    for number, (name, (stream, closed, file)) in enumerate(zip(STREAMS, was, strict=True)):
+        if file and _file(number) != file:
+            os.dup2(_spare(number), number)
+        setattr(module, name, stream if closed or not stream.closed else _reopened(number, stream))
+
+
+def _reopened(number: int, stream: TextIO) -> TextIO:
+    return cast(TextIO, os.fdopen(number, stream.mode, 1, stream.encoding, stream.errors, closefd=False))
+
+
 def _set_environment(_: ModuleType, variables: dict[str, str]) -> None:
     for name in set(os.environ) - set(variables):
         del os.environ[name]
@@ -74,7 +109,8 @@ KEPT = (
     Kept("signal", lambda _: signal.getitimer(0), lambda _, was: signal.setitimer(0, *was)),  # 0: the real time
     Kept("locale", lambda _: locale.setlocale(locale.LC_ALL), lambda _, was: locale.setlocale(locale.LC_ALL, was)),
     Kept("gc", lambda _: gc.isenabled(), lambda _, on: gc.enable() if on else gc.disable()),
-    *(_attribute("sys", name) for name in ("path", "argv", "stdin", "stdout", "stderr", "excepthook")),
+    *(_attribute("sys", name) for name in ("path", "argv", "excepthook")),
+    Kept("sys", _streams, _open_streams),
     _pair("sys", "getrecursionlimit", "setrecursionlimit"),
     _pair("sys", "getswitchinterval", "setswitchinterval"),
     *(_attribute("warnings", name) for name in ("filters", "showwarning")),

@@ -275,7 +275,7 @@ HUGE = {
     "episodes": {"episodes": 2**63},
     "seed": {"seed": 2**200},
     "size": {"maps": {"blobs": {"size": 10**9, "obstacles": [0, 1], "obstacle_size": [1, 1]}}},
-    "obstacles": {"maps": {"blobs": {"size": 9, "obstacles": [10**12, 10**12], "obstacle_size": [1, 1]}}},
+    "obstacles": {"maps": {"blobs": {"size": 9, "obstacles": [0, 10**12], "obstacle_size": [1, 1]}}},
     "radius": {"sensor": {"radius": 10**9}},
     "distance": {"tasks": {"distance": [1, 2**70]}},
     "iterations": {"agents": [{"vin": {"checkpoint": "vin-grid", "iterations": 10**12}}]},
@@ -284,17 +284,11 @@ HUGE = {
 
 
 def test_huge_numbers(desk: Any) -> None:
-    """A number that no row or memory can hold is a line at its place, and what `check` lets pass `run` plays."""
+    """A number that no row or memory can hold is one line at its place."""
     files = [desk.scenario(f"{name}.yaml", **{"name": name, **changes}) for name, changes in HUGE.items()]
     ended = desk.fogbench("check", *files, seconds=60)
     assert ended.code == 2
-    told = {name: [line for line in ended.lines if line.startswith(f"{name}.yaml")] for name in HUGE}
-    silent = {name for name, lines in told.items() if not lines} - {"distance", "hard_seconds", "memory", "seed"}
-    assert not silent, f"got no line on {sorted(silent)}"
-    assert all(len(lines) <= 2 for lines in told.values())
-    accepted = [f"{name}.yaml" for name, lines in told.items() if not lines]
-    for file in accepted:
-        assert desk.fogbench("run", file).code == 0
+    assert [line.partition(".")[0] for line in ended.lines] == list(HUGE)
 
 
 def test_one_mistake_at_a_time(desk: Any) -> None:
@@ -323,11 +317,10 @@ def test_one_mistake_at_a_time(desk: Any) -> None:
     desk.scenario(maps=None, rules={"collision": "blocked"}, budget={"steps": 700}, variants=variants, episodes=1)
     ended = desk.fogbench("check", "s.yaml")
     assert ended.code == 2
-    for place in ("lorr.map:5:3", "short.map:7", "flt.scen:2", "500 to 600"):
-        assert any(place in line for line in ended.lines), f"got no line on {place}: {ended.err}"
-    for key in ("image", "resolution", "origin", "negate", "mode", "occupied_thresh", "free_thresh"):
-        told = [line for line in ended.lines if "bad.yaml:" in line and key in line]
-        assert told, f"got no line on {key} of bad.yaml: {ended.err}"
+    for place in ("lorr.map:5:3", "short.map:7", "flt.scen:2:9", "500 to 600"):
+        assert sum(place in line for line in ended.lines) == 1, f"got not one line on {place}: {ended.err}"
+    told = [line.partition("bad.yaml:")[2].split()[1] for line in ended.lines if "bad.yaml:" in line]
+    assert told == ["image:", "resolution:", "origin:", "negate:", "mode:", "occupied_thresh:", "free_thresh:"]
 
 
 SMALL_MAPS = {"blobs": {"size": 12, "obstacles": [2, 4], "obstacle_size": [2, 3]}}
