@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import yaml
 
@@ -40,7 +41,7 @@ def parse(text: str, faults: list[Fault]) -> Value | None:
 
 def _read(text: str, faults: list[Fault]) -> Value | None:
     try:
-        node = yaml.compose(text, yaml.SafeLoader)
+        node = yaml.compose(text, _Loader)
         if node is not None:
             return _Document(text, faults).value(node, "", None, ())
         faults.append(Fault(1, 1, "", "an empty file", "a mapping"))
@@ -50,8 +51,6 @@ def _read(text: str, faults: list[Fault]) -> Value | None:
     except yaml.reader.ReaderError as error:
         before = text[: error.position].split("\n")
         faults.append(_broken(Spot(len(before), len(before[-1]) + 1), f"{error.reason}: {chr(error.character)!r}"))
-    except RecursionError:
-        faults.append(_broken(Spot(1, 1), TOO_DEEP))
     except (ValueError, OverflowError) as error:  # a number in an escape or a directive is out of range
         faults.append(_broken(Spot(1, 1), str(error)))
     return None
@@ -63,6 +62,21 @@ def _broken(spot: Spot, problem: str) -> Fault:
 
 def _spot(mark: yaml.Mark | None) -> Spot:
     return Spot(mark.line + 1, mark.column + 1) if mark else Spot(1, 1)
+
+
+class _Loader(yaml.SafeLoader):
+    """Stops where a file is nested too deep, before Python does."""
+
+    depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """The next node with all below it."""
+        if self.depth > DEEPEST:
+            raise yaml.MarkedYAMLError(problem=TOO_DEEP, problem_mark=self.peek_event().start_mark)
+        self.depth += 1
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
 
 
 class _Document:

@@ -352,7 +352,7 @@ def test_a_file_that_is_no_mapping_has_one_mistake(text: str, line: str) -> None
             f"a: {'[' * 101}{']' * 101}",
             "1:104  got broken YAML (nested more than 100 deep); expected one YAML document.",
         ),
-        ("[" * 3000 + "]" * 3000, "1:1  got broken YAML (nested more than 100 deep); expected one YAML document."),
+        ("[" * 3000 + "]" * 3000, "1:102  got broken YAML (nested more than 100 deep); expected one YAML document."),
         (BOMB, "1:37  got broken YAML (more than 100,000 values, aliases counted); expected one YAML document."),
     ],
     ids=["deep", "deeper", "bomb"],
