@@ -19,7 +19,7 @@ from safetensors.numpy import load, save
 from fogbench.learned.shapes import Shapes
 from fogbench.worlds import files
 from fogbench.worlds.files import sha256
-from fogbench.worlds.mistake import Mistake, near, one_of
+from fogbench.worlds.mistake import Mistake, near, one_of, shown
 from fogbench.worlds.types import Array
 
 SHIPPED = Path(__file__).with_name("checkpoints")
@@ -56,9 +56,9 @@ class Card(BaseModel):
             Mistake: it is the card of another network, or of a later version.
         """
         if self.network != network:
-            raise Mistake(f"a checkpoint of {network} (this is one of {self.network})")
+            raise Mistake(f"a checkpoint of {network} (this is one of {shown(self.network)})")
         if odd := sorted(self.settings.keys() - settings.keys()):
-            raise Mistake(f"a checkpoint of this version (its card has {odd[0]})")
+            raise Mistake(f"a checkpoint of this version (its card has {shown(odd[0])})")
 
     def compare(self, settings: Mapping[str, Any], given: Container[str], former: Mapping[str, Any]) -> None:
         """Compare it with the settings that were laid over it, of which some were `given`.
@@ -70,9 +70,9 @@ class Card(BaseModel):
         """
         for name, value in sorted({**former, **self.settings}.items()):
             if settings[name] != value and name not in given:
-                raise Mistake(f"a checkpoint whose card can be read ({name}: {value!r})")
+                raise Mistake(f"a checkpoint whose card can be read ({shown(f'{name}: {value!r}')})")
             if settings[name] != value and name not in WEIGHTLESS:
-                raise Mistake(f"{name} {value}, with which the checkpoint was trained")
+                raise Mistake(f"{shown(f'{name} {value}')}, with which the checkpoint was trained")
 
 
 def located(checkpoint: str, whole: Callable[[str], Path]) -> str:
@@ -122,7 +122,7 @@ def first_of(error: ValidationError) -> str:
     """The first of its mistakes."""
     detail = error.errors()[0]
     where = ".".join(map(str, detail["loc"]))
-    return f"{where}: {detail['msg']}" if where else detail["msg"]
+    return f"{shown(where)}: {detail['msg']}" if where else detail["msg"]
 
 
 def read_weights(place: Path, digest: str, forms: Mapping[str, str]) -> dict[str, Array]:
@@ -145,14 +145,16 @@ def read_weights(place: Path, digest: str, forms: Mapping[str, str]) -> dict[str
     try:
         weights: dict[str, Array] = load(contents)
     except (SafetensorError, KeyError, TypeError, ValueError, OverflowError) as error:
-        raise Mistake(f"a file of weights ({place.name}: {error})") from None
+        raise Mistake(f"a file of weights ({place.name}: {shown(str(error))})") from None
     found = {name: form(array) for name, array in weights.items()}
     for name in sorted(forms.keys() | found.keys()):
         here, there = forms.get(name, "missing"), found.get(name, "missing")
         if here != there:
-            raise Mistake(f"a checkpoint that fits its card ({place.name}: {name} is {there} there, {here} here)")
+            raise Mistake(
+                f"a checkpoint that fits its card ({place.name}: {shown(name)} is {there} there, {here} here)"
+            )
         if not np.isfinite(weights[name]).all():
-            raise Mistake(f"a checkpoint of numbers ({place.name}: {name} has some that are none)")
+            raise Mistake(f"a checkpoint of numbers ({place.name}: {shown(name)} has some that are none)")
     return weights
 
 

@@ -164,7 +164,13 @@ FORMATS = {
 }
 """By name; one entry makes a new one part of all tests here."""
 
-FOUND = [("map_server", FLOOR.replace(b"%.pgm", b"9" * 5000))]
+FOUND = [
+    ("map_server", FLOOR.replace(b"%.pgm", b"9" * 5000)),
+    ("scenario", b"[" * 60_000),
+    ("card", CARD.replace('"Vin"', f'"{"V" * 3000}"').encode()),
+    ("card", CARD.replace('"settings": {', f'"settings": {{"{"x" * 3000}": 1, ').encode()),
+    ("card", CARD.replace('"settings": {', f'"settings": {{"iterations": "{"x" * 3000}", ').encode()),
+]
 """Files that did harm once."""
 
 PLANTED = {
