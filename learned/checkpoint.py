@@ -109,7 +109,7 @@ def read_card(place: Path) -> Card:
     """
     card = place.with_suffix(".json")
     try:
-        return Card.model_validate_json(card.read_text("utf-8"))
+        return Card.model_validate_json(files.contents(card).decode())
     except FileNotFoundError:
         raise Mistake(f"a checkpoint with its card (there is no {card.name} beside {place.name})") from None
     except ValidationError as error:
@@ -137,7 +137,7 @@ def read_weights(place: Path, digest: str, forms: Mapping[str, str]) -> dict[str
         Mistake: the file is not the one that its card was written for, or other weights are in it.
     """
     try:
-        contents = place.read_bytes()
+        contents = files.contents(place)
     except OSError as error:
         raise Mistake(f"a checkpoint that can be read ({place.name}: {error.strerror})") from None
     if sha256(contents) != digest:

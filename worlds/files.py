@@ -1,5 +1,6 @@
 """Files: read and written whole, known by their contents, complained about in one line; folders held by one process."""
 
+import errno
 import fcntl
 import hashlib
 import os
@@ -8,6 +9,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from time import time_ns
 
 from fogbench.worlds.mistake import Mistake
@@ -17,14 +19,26 @@ SETTLED = 2_000_000_000
 """Nanoseconds after which a change of a file cannot hide behind the one before."""
 
 
-def read(path: Path) -> bytes:
+def contents(path: Path) -> bytes:
     """The contents of a file.
+
+    Raises:
+        OSError: it cannot be read, or may have no end.
+    """
+    mode = path.stat().st_mode
+    if not (S_ISREG(mode) or S_ISDIR(mode)):  # who reads a folder is told so
+        raise OSError(errno.EINVAL, "A device or a pipe", str(path))
+    return path.read_bytes()
+
+
+def read(path: Path) -> bytes:
+    """The contents of a file of a map.
 
     Raises:
         MapError: it cannot be read.
     """
     try:
-        return path.read_bytes()
+        return contents(path)
     except OSError as error:
         raise _unreadable(path, error) from None
 
@@ -58,8 +72,8 @@ def load(path: Path) -> Loaded:
 
 
 def _loaded(path: Path) -> Loaded:
-    contents = read(path)
-    return Loaded(path, sha256(contents), contents)
+    found = read(path)
+    return Loaded(path, sha256(found), found)
 
 
 @lru_cache(maxsize=32)

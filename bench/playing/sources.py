@@ -10,6 +10,8 @@ from importlib.util import decode_source
 from pathlib import Path
 from typing import NamedTuple
 
+from fogbench.worlds import files
+
 PARTS = re.compile(
     r"""
     ((?: [^"'\#\s]+ | [ \t\f]+(?=[^\#\s])
@@ -77,7 +79,7 @@ def _counts_as_before(path: Path) -> bool:
 
 
 def _read(path: Path) -> Source:
-    contents = path.read_bytes()
+    contents = files.contents(path)
     try:
         if path.suffix not in (".py", ".pyi"):
             return Source(sha256(contents).hexdigest(), ())

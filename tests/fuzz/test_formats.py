@@ -166,6 +166,11 @@ FORMATS = {
 
 FOUND = [
     ("map_server", FLOOR.replace(b"%.pgm", b"9" * 5000)),
+    ("map_server", FLOOR.replace(b"%.pgm", b"/dev/zero")),
+    ("scenario", MOVINGAI.replace(b"%.map", b"/dev/zero")),
+    ("scenario", MOVINGAI.replace(b"%.scen", b"/dev/zero")),
+    ("scenario", OCCUPANCY.replace(b"%.yaml", b"/dev/zero")),
+    ("scenario", NETWORK.replace(b"./%.safetensors", b"/dev/zero")),
     ("scenario", b"[" * 60_000),
     ("card", CARD.replace('"Vin"', f'"{"V" * 3000}"').encode()),
     ("card", CARD.replace('"settings": {', f'"settings": {{"{"x" * 3000}": 1, ').encode()),

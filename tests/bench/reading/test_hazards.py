@@ -159,6 +159,8 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
             text_of(page)
     with pytest.raises(ScenarioError, match="got a file that cannot be read"):
         text_of(tmp_path)
+    with pytest.raises(ScenarioError, match="got a file of more letters; expected at most 1,000,000"):
+        text_of(Path("/dev/zero"))
 
 
 PIECES = [
