@@ -77,11 +77,11 @@ def text_of(path: Path) -> str:
     try:
         with path.open(encoding="utf-8-sig") as file:
             text = file.read(LARGEST + 1)  # a device may have no end
-        if len(text) > LARGEST:
-            raise ScenarioError([f"{path}: got a file of more letters; expected at most {LARGEST:,}."])
-        return text
     except (OSError, UnicodeDecodeError) as error:
         raise ScenarioError([f"{path}: got a file that cannot be read ({error}); expected UTF-8 text."]) from None
+    if len(text) > LARGEST:
+        raise ScenarioError([f"{path}: got a file of more letters; expected at most {LARGEST:,}."])
+    return text
 
 
 def read_scenario(text: str, path: Path) -> Scenario:
