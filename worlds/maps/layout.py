@@ -9,8 +9,8 @@ from pydantic import Field
 from fogbench.worlds.settings import SIDE, Settings
 from fogbench.worlds.types import Array, Cell, MapError, World
 
-MAPS = 1000
-"""Maps drawn before a family gives up."""
+MAPS, CELLS = 1000, 2**26
+"""Maps drawn before a family gives up, and cells in all of them."""
 
 PAIRS = 100
 """Pairs of start and goal drawn on a map before another map is drawn."""
@@ -69,14 +69,17 @@ class DrawnMaps(CellMaps, ABC):
         """The first drawn map on which a task fits the conditions; `episode` plays no part.
 
         Raises:
-            MapError: none of MAPS maps had one.
+            MapError: none of MAPS maps, or of CELLS cells, had one.
         """
         del episode
-        for _ in range(MAPS):
-            found = fit(self.draw(rng, conditions), conditions, rng)
+        maps = cells = 0
+        while maps < MAPS and cells < CELLS:
+            layout = self.draw(rng, conditions)
+            found = fit(layout, conditions, rng)
             if found is not None:
                 return found
-        raise MapError(f"{type(self).__name__}: no task with {conditions.wanted()} was found on {MAPS} maps")
+            maps, cells = maps + 1, cells + layout.blocked.size
+        raise MapError(f"{type(self).__name__}: no task with {conditions.wanted()} was found on {maps} maps")
 
 
 class SquareMaps(DrawnMaps):

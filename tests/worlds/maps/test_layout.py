@@ -128,3 +128,10 @@ def test_a_family_without_a_fitting_task_says_so(blocks: dict[str, Any], bounds:
     with pytest.raises(MapError) as error:
         Tunnel(length=(9, 9)).sample(np.random.default_rng(0), 0, conditions(steps=1, **blocks))
     assert str(error.value) == f"Tunnel: no task with {bounds} was found on 1000 maps"
+
+
+def test_large_maps_are_given_up_sooner() -> None:
+    """A search that would take an hour on the largest maps ends after some of them."""
+    maps = Blobs(size=4096, obstacles=(0, 1_000_000), obstacle_size=(1, 2))
+    with pytest.raises(MapError, match="was found on 4 maps"):
+        maps.sample(np.random.default_rng(0), 0, conditions(steps=20_000, tasks={"distance": [12_000, 13_000]}))

@@ -3,10 +3,12 @@
 from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
+from fogbench.worlds.kernel import kernel
 from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.settings import SIDE, PositiveRange, ascending
+from fogbench.worlds.types import Array
 
 Some = Annotated[int, Field(ge=0, le=1_000_000)]
 """Rectangles of one map."""
@@ -22,13 +24,43 @@ class Blobs(SquareMaps):
     obstacle_size: PositiveRange
     """Both sides of each, drawn uniformly and apart [cells]."""
 
+    @field_validator("obstacles")
+    @classmethod
+    def _no_more_than_cells(cls, obstacles: tuple[int, int], info: ValidationInfo) -> tuple[int, int]:
+        cells = info.data.get("size", SIDE) ** 2
+        if obstacles[1] > cells:
+            raise ValueError(f"at most {cells:,} rectangles, one for each cell")
+        return obstacles
+
     def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A map without a task; the upper left corner of a rectangle is uniform over the cells."""
         del conditions
-        blocked = np.zeros((self.size, self.size), np.bool_)  # [H, W]
         count = int(rng.integers(*self.obstacles, endpoint=True))
         corners = rng.integers(self.size, size=(count, 2))  # [count, 2]
         sides = rng.integers(*self.obstacle_size, size=(count, 2), endpoint=True)  # [count, 2]
-        for (r, c), (rows, columns) in zip(corners.tolist(), sides.tolist(), strict=True):
-            blocked[r : r + rows, c : c + columns] = True
-        return Layout(blocked)
+        return Layout(covered(self.size, corners, sides))
+
+
+@kernel
+def covered(size: int, corners: Array, sides: Array) -> Array:
+    """Which cells of a square lie in a rectangle: [size, size] bool; each rectangle costs the same, however large.
+
+    Args:
+        size: of the square.
+        corners: [count, 2] int64, the upper left ones.
+        sides: [count, 2] int64, from 1; what lies outside of the square is cut.
+    """
+    depth = np.zeros((size + 1, size + 1), np.int32)  # at first, by how much that of each cell differs
+    for k in range(len(corners)):
+        top, left = corners[k]
+        bottom, right = min(top + sides[k, 0], size), min(left + sides[k, 1], size)
+        depth[top, left] += 1
+        depth[top, right] -= 1
+        depth[bottom, left] -= 1
+        depth[bottom, right] += 1
+    for r in range(size):
+        for c in range(1, size):
+            depth[r, c] += depth[r, c - 1]
+        for c in range(size if r else 0):
+            depth[r, c] += depth[r - 1, c]
+    return depth[:size, :size] > 0

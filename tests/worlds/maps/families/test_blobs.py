@@ -1,11 +1,14 @@
 """Simple obstacles."""
 
 import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.ndimage import find_objects, label
 from scipy.stats import chisquare
 
 from fogbench.worlds.grid.conditions import GridConditions
-from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.maps.families.blobs import Blobs, covered
 from fogbench.worlds.types import Array
 
 CONDITIONS = GridConditions.model_validate({"budget": {"steps": 60}})
@@ -48,3 +51,19 @@ def test_no_obstacles_leave_an_empty_map() -> None:
     """Both ends of `obstacles` are included, also 0."""
     blocked = draws(Blobs(size=8, obstacles=(0, 1), obstacle_size=(1, 1)), 64)
     assert {int(map_.sum()) for map_ in blocked} == {0, 1}
+
+
+@given(st.integers(2, 12), st.lists(st.tuples(*[st.integers(0, 11)] * 2, *[st.integers(1, 20)] * 2)))
+def test_rectangles_cover_what_slices_cover(size: int, rectangles: list[tuple[int, int, int, int]]) -> None:
+    """Counted by where they begin and end, or filled one by one: the same cells are blocked."""
+    inside = np.array([each for each in rectangles if max(each[:2]) < size], np.int64).reshape(-1, 4)
+    blocked = np.zeros((size, size), np.bool_)
+    for r, c, rows, columns in inside.tolist():
+        blocked[r : r + rows, c : c + columns] = True
+    np.testing.assert_array_equal(covered(size, inside[:, :2], inside[:, 2:]), blocked)
+
+
+def test_there_are_no_more_rectangles_than_cells() -> None:
+    """A million on 64 cells would be drawn for every map, and fill it."""
+    with pytest.raises(ValueError, match="at most 64 rectangles, one for each cell"):
+        Blobs(size=8, obstacles=(0, 65), obstacle_size=(1, 2))
