@@ -7,6 +7,9 @@ from fogbench.worlds.maps.distances import FAR, distances
 from fogbench.worlds.maps.layout import CellConditions, Layout
 from fogbench.worlds.types import Array, Cell, MapError, World
 
+ONE_TASK = "all episodes are one and the same task: intervals and tests tell of luck alone, not of other tasks"
+"""What a user should know whose scenario fixes the task."""
+
 
 def both_or_neither(start: object, goal: object) -> None:
     """Hold it against a family that only half of its task is fixed.

@@ -11,7 +11,7 @@ from fogbench.worlds.files import Loaded, load
 from fogbench.worlds.maps.files.mistakes import refuse
 from fogbench.worlds.maps.files.octile import read_map
 from fogbench.worlds.maps.files.scen import Trip, read_scen
-from fogbench.worlds.maps.fixed import both_or_neither, fixed, misfit
+from fogbench.worlds.maps.fixed import ONE_TASK, both_or_neither, fixed, misfit
 from fogbench.worlds.maps.layout import CellConditions, CellMaps, Layout
 from fogbench.worlds.reading.positions import Fault
 from fogbench.worlds.settings import Count, MapFile
@@ -68,9 +68,9 @@ class MovingAI(CellMaps):
         return None if self.start else self._list(conditions).count(most)
 
     def notes(self) -> Sequence[str]:
-        """Whether the list names another map, and which of its tasks lie on obstacles."""
+        """Whether the task is fixed, or else the list names another map, and which of its tasks lie on obstacles."""
         if self.start:
-            return ()
+            return [f"{self.map}: {ONE_TASK}"]
         layout, trips = _files(load(self.map), load(self._scen()))
         strange, stuck = _strange(trips, self.map), [trip for trip in trips if _stuck(trip, layout)]
         notes = []

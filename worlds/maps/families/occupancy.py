@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from fogbench.worlds.files import Loaded, load
 from fogbench.worlds.maps.files.image import read_image
 from fogbench.worlds.maps.files.map_server import SAVED_UNKNOWN, Header, occupancy, read_header
-from fogbench.worlds.maps.fixed import both_or_neither, fixed
+from fogbench.worlds.maps.fixed import ONE_TASK, both_or_neither, fixed
 from fogbench.worlds.maps.layout import CellConditions, CellMaps, Layout, fit
 from fogbench.worlds.settings import Count, MapFile, Settings
 from fogbench.worlds.types import Array, Cell, MapError, World
@@ -88,7 +88,7 @@ class Occupancy(CellMaps):
         return f"Occupancy map={load(self.map).sha256} image={image.sha256} downsample={self.downsample}{task}"
 
     def notes(self) -> Sequence[str]:
-        """How many cells are blocked that map_server might call free."""
+        """How many cells are blocked that map_server might call free, and whether the task is fixed."""
         header, image = self._files()
         told = _floor(image, header, self.downsample)
         notes = []
@@ -97,6 +97,8 @@ class Occupancy(CellMaps):
             notes.append(f"{told.saved} cells of grey {SAVED_UNKNOWN} are blocked, {why}")
         if told.between:
             notes.append(f"{told.between} cells between free_thresh and occupied_thresh are blocked")
+        if self.start:
+            notes.append(ONE_TASK)
         return [f"{image.path}: {note}" for note in notes]
 
     def _files(self) -> tuple[Header, Loaded]:

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.occupancy import Occupancy
+from fogbench.worlds.maps.fixed import ONE_TASK
 from fogbench.worlds.types import Array, MapError
 
 YAML = "image: x.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
@@ -142,6 +143,7 @@ def test_cells_between_the_thresholds_are_counted(tmp_path: Path) -> None:
 def test_a_fixed_task_in_cells(tmp_path: Path) -> None:
     """Cells count in the cropped and coarsened map; every episode plays the task, whose words are its own."""
     maps = family(tmp_path, downsample=2, start=(0, 1), goal=(1, 0))
+    assert maps.notes()[-1].endswith(ONE_TASK)
     maps = maps.model_copy(update={"goal": (1, 1)})
     for seed in (0, 1):
         world = sample(maps, seed)
