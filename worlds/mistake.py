@@ -39,10 +39,10 @@ SHOWN = 60
 """Letters of a value or a name that an error shows at most."""
 
 
-def shown(text: str) -> str:
+def shown(text: str, most: int = SHOWN) -> str:
     """A value or a name as an error shows it: in one line, and cut."""
-    text = " ".join(text[: 10 * SHOWN].split())
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+    text = " ".join(text[: 10 * most].split())
+    return text if len(text) <= most else f"{text[:most]}..."
 
 
 def near(name: str, names: Iterable[str]) -> str:

@@ -172,6 +172,8 @@ FOUND = [
     ("scenario", OCCUPANCY.replace(b"%.yaml", b"/dev/zero")),
     ("scenario", NETWORK.replace(b"./%.safetensors", b"/dev/zero")),
     ("scenario", b"[" * 60_000),
+    ("scenario", b"*a" + b"9" * 5000),
+    ("scenario", GRID.replace(b"[0, 3]", b"[0, 1000000]")),
     ("card", CARD.replace('"Vin"', f'"{"V" * 3000}"').encode()),
     ("card", CARD.replace('"settings": {', f'"settings": {{"{"x" * 3000}": 1, ').encode()),
     ("card", CARD.replace('"settings": {', f'"settings": {{"iterations": "{"x" * 3000}", ').encode()),

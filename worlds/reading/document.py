@@ -57,7 +57,7 @@ def _read(text: str, faults: list[Fault]) -> Value | None:
 
 
 def _broken(spot: Spot, problem: str) -> Fault:
-    return Fault(*spot, "", f"broken YAML ({problem})", "one YAML document")
+    return Fault(*spot, "", f"broken YAML ({shown(problem, 3 * SHOWN)})", "one YAML document")
 
 
 def _spot(mark: yaml.Mark | None) -> Spot:
