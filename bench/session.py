@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from fogbench.bench.check import notes, refuse_idle
 from fogbench.bench.playing import store
 from fogbench.bench.playing.agenda import FIRST
-from fogbench.bench.playing.crashes import FOLDER
+from fogbench.bench.playing.crashes import FOLDER, crash_file
 from fogbench.bench.playing.keys import Versions
 from fogbench.bench.playing.pool import cpus
 from fogbench.bench.playing.provenance import differences, read_run, versions_of
@@ -25,6 +26,9 @@ from fogbench.bench.reporting.tables import markdown, print_table
 from fogbench.bench.several import each, read_all, say
 from fogbench.worlds.mistake import Mistake, unknown
 from fogbench.worlds.types import Outcome
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 EACH = 16
 """Workers of a CPU at most: each takes some hundred megabytes."""
@@ -139,9 +143,16 @@ def _report(scenario: Scenario, folder: Path, console: Console, versions: Versio
     for line in write_plots(frame, table, scenario, run_facts, folder):
         say(line, console)
     say(f"Tables and plots are in {folder}/", console)
-    if (folder / FOLDER).exists():
-        say(f"Where agents crashed first is in {folder / FOLDER}/", console)
+    _say_tracebacks(frame, folder, console)
     return bool(frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name]).any())
+
+
+def _say_tracebacks(frame: "pd.DataFrame", folder: Path, console: Console) -> None:
+    """Say where the traceback of each agent that crashed is."""
+    crashed = frame.loc[frame["outcome"] == Outcome.CRASHED.name, "agent"].unique()
+    for agent, place in ((agent, folder / FOLDER / crash_file(agent)) for agent in crashed):
+        if place.exists():
+            say(f"{agent}: the traceback of its first crash is in {place}", console)
 
 
 def _say_differences(scenario: Scenario, folder: Path, console: Console) -> None:
