@@ -58,7 +58,7 @@ def _train(course: "Course", console: Console) -> None:
     with Progress(TextColumn("{task.description}", markup=False), *columns, console=console) as bars:
         total, done = recipe.learning.batches, course.student.batches
         if done:
-            _say(f"Resumes from batch {done}.", console)
+            _say(f"Resumes from batch {done}." if done < total else f"All {total} batches were done before.", console)
         bar = bars.add_task(recipe.name, total=total, completed=done, loss="")
         for news in course.go_on():
             bars.update(bar, completed=news.batches, loss=f"loss {news.loss:.3f}")

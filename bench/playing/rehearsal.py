@@ -45,5 +45,5 @@ def _answers(pool: Pool, left: list[tuple[Variant, Entry]]) -> Iterator[tuple[tu
 
 
 def _line(scenario: Scenario, variant: Variant, entry: Entry, wrong: str) -> str:
-    expected = f"an agent that can decide; its first decision in {variant.name} ended with {wrong}"
+    expected = f"an agent that can decide; its first decision in variant {variant.name} ended with {wrong}"
     return entry.named._replace(expected=expected).text(str(scenario.path))

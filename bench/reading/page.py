@@ -84,7 +84,7 @@ class Page(Settings):
     agents: Annotated[list[Any], Field(min_length=1)]
     """Names, or `name: settings` where it has any; `label` among the settings renames it in tables."""
     reference: str | None = None
-    """Label of the agent that the others are compared with in pairs; by default the first."""
+    """Label of the agent that all others are tested against, paired by episode; by default the first."""
     episodes: Annotated[int, Field(ge=1, le=EPISODES)]
     """Episodes for each variant and agent."""
     seed: Seed = 0

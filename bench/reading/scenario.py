@@ -32,7 +32,7 @@ class Variant:
     """An object of the class that its kind names."""
     agents: tuple[Entry, ...]
     reference: str
-    """Label of the agent that the others are compared with in pairs."""
+    """Label of the agent that all others are tested against, paired by episode."""
     episodes: int
     seed: int
     files: tuple[Path, ...] = ()

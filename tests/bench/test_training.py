@@ -64,7 +64,7 @@ def test_a_training_leaves_weights_a_log_and_curves(train: Fogbench) -> None:
     assert share <= 1
     assert f"% success, test error {share:.3f}" in out
     again = train("small.yaml")[1]
-    assert "Resumes from batch 4." in again
+    assert "All 4 batches were done before." in again
     assert "few:" not in again
 
 

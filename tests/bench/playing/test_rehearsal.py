@@ -87,7 +87,10 @@ def test_what_cannot_decide_is_told_in_one_line_at_its_place(check: Check, tmp_p
     for way, line in zip(WAYS, lines, strict=True):
         number = text.index(f"- ./{way}.py:Mine:") + 1
         assert line.startswith(f"{tmp_path}/rude.yaml:{number}:3  agents[")
-        assert f": got ./{way}.py:Mine; expected an agent that can decide; its first decision in one ended with" in line
+        assert (
+            f": got ./{way}.py:Mine; expected an agent that can decide; its first decision in variant one ended with"
+            in line
+        )
         assert WAYS[way][0] in line
 
 
