@@ -171,7 +171,7 @@ class Pool:
         fresh = self.workers[self.workers.index(worker)] = self._start()
         if worker.tasks:
             task = worker.tasks.popleft()
-            hung = Lost(Outcome.HUNG, f"no answer after {task.seconds:g} s, ended from outside", "")
+            hung = Lost(Outcome.HUNG, f"no answer after {task.seconds:g} s", "")
             yield task, hung if code is None else Lost(Outcome.CRASHED, f"the agent's process {_death(code)}", words)
         for task in worker.tasks:
             fresh.give(task)

@@ -48,8 +48,9 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
     if agent not in labels:
         raise unknown("--agent", agent, labels)
     count = store.stale(folder, scenario, versions_of(folder)).get((variant.name, agent))
+    span = f"from {rows['episode'].min()} to {rows['episode'].max()}"
     lacking = (
-        f"--episode: got {episode}; expected one of the {len(rows)} that are recorded of {agent} in {variant.name}."
+        f"--episode: got {episode}; expected one of the {len(rows)} of {agent} in {variant.name}, {span}."
         if len(rows)
         else f"{folder}: got no episode of {agent} in {variant.name}; expected some, as `fogbench run` records them."
     )

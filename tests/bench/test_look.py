@@ -136,7 +136,7 @@ def test_what_was_not_recorded(played: Scenario, tmp_path: Path) -> None:
             0,
             f"{tmp_path}/store: got no episode of vin in short; expected some, as `fogbench run` records them.",
         ),
-        ("long", 7, "--episode: got 7; expected one of the 3 that are recorded of vin in long."),
+        ("long", 7, "--episode: got 7; expected one of the 3 of vin in long, from 0 to 2."),
         ("lang", 0, "--variant: got lang; expected one of short, long. Did you mean long?"),
     ):
         with pytest.raises(Mistake) as caught:

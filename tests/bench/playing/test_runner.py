@@ -87,7 +87,7 @@ def test_bad_agents_cost_their_own_episodes(make: Any, tmp_path: Path) -> None:
         "act": ("CRASHED", "ValueError: no act (act, line "),
         "memory": ("CRASHED", "LookupError: no count (memory_bytes, line "),
         "nonsense": ("CRASHED", "TypeError: act returned 'north' (str); expected a Move or None"),
-        "sleep": ("HUNG", "no answer after 8 s, ended from outside"),
+        "sleep": ("HUNG", "no answer after 8 s"),
         "hog": ("OUT_OF_MEMORY", ""),
         "exit": ("CRASHED", "the agent's process ended with exit code 3"),
         "segfault": ("CRASHED", "the agent's process was ended by SIGSEGV"),
