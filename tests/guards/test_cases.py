@@ -421,3 +421,20 @@ def test_images_that_map_server_reads(desk: Any, suffix: str, mode: str) -> None
         assert all("map." in line for line in ended.lines)
     else:
         assert ended.code == 0, ended.err
+
+
+def test_a_mistake_in_one_file_hides_none_in_another(desk: Any) -> None:
+    """A planner that cannot decide is told beside a number that is none."""
+    desk.scenario("number.yaml", name="number", episodes="many")
+    desk.scenario("planner.yaml", name="planner", agents=[desk.planner("bold.py", act="raise ValueError('no')")])
+    ended = desk.fogbench("check", "number.yaml", "planner.yaml")
+    assert ended.code == 2
+    assert [line.partition(":")[0] for line in ended.lines] == ["number.yaml", "planner.yaml"]
+
+
+def test_a_mended_planner_has_no_traceback(desk: Any) -> None:
+    """A report names the traceback of a crash that counts, and none of a planner as it was before."""
+    desk.scenario(agents=[desk.planner("bold.py", act="raise ValueError('no')")], episodes=1)
+    assert "the traceback of its first crash is in results/small/crashes/" in desk.fogbench("run", "s.yaml").out
+    desk.planner("bold.py")
+    assert "traceback" not in desk.fogbench("run", "s.yaml").out
