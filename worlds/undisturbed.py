@@ -77,7 +77,7 @@ def _streams(module: ModuleType) -> list[tuple[Any, bool, tuple[int, int] | None
 
 
 def _file(number: int) -> tuple[int, int] | None:
-    """What identifies an open file; None if it is closed."""
+    """What identifies an open file, of which a spare number is kept; None if it is closed."""
     with suppress(OSError):
         _spare(number)
         found = os.fstat(number)
