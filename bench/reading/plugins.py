@@ -11,7 +11,7 @@ from typing import TypeVar
 from fogbench.bench.reading.plugin_files import module_name
 from fogbench.bench.reading.tables import EXTRAS, KIND, PACKAGES, Table
 from fogbench.worlds import KINDS, Kind
-from fogbench.worlds.mistake import Unavailable, near, one_of
+from fogbench.worlds.mistake import Unavailable, near, one_of, shown
 from fogbench.worlds.reading.blocks import raised
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.tables import brought, registered
@@ -75,7 +75,7 @@ def load_conditions(name: str, kind: Kind) -> type[Settings]:
     """
     found = load(KIND, name, kind.conditions)
     if "budget" not in found.model_fields:
-        raise PluginError(f"a kind of world whose conditions have a budget; those of {name} have none")
+        raise PluginError(f"a kind of world whose conditions have a budget; those of {shown(name)} have none")
     return found
 
 
@@ -100,7 +100,7 @@ def _thing(name: str, target: str, sort: type[Thing], told: str) -> Thing:
     if isinstance(found, sort):
         return found
     others = [key for key, thing in vars(module).items() if isinstance(thing, sort)]
-    raise PluginError(f"a {told} of {Path(place).name}, which has no {own}", near(own, others))
+    raise PluginError(f"a {told} of {Path(place).name}, which has no {shown(own)}", near(own, others))
 
 
 def _import(name: str, place: str) -> ModuleType:
@@ -109,9 +109,9 @@ def _import(name: str, place: str) -> ModuleType:
     except ModuleNotFoundError as error:
         missing = error.name or ""
         if f"{place}.".startswith(f"{missing}."):
-            raise PluginError(f"a module that is installed; there is no {missing}") from None
+            raise PluginError(f"a module that is installed; there is no {shown(missing)}") from None
         if _lies_beside(Path(place), missing):
-            alone = f"one file alone, or a package that is installed; it imports {missing}, which lies beside it"
+            alone = f"one file alone, or a package that is installed; it imports {shown(missing)}, which lies beside it"
             raise PluginError(alone) from None
         raise Unavailable(_how_to_get(name, missing)) from None
     except FileNotFoundError as error:
@@ -145,4 +145,4 @@ def _lies_beside(file: Path, module: str) -> bool:
 def _how_to_get(name: str, package: str) -> str:
     if name in EXTRAS:
         return f'needs the extra {EXTRAS[name]}: pip install ".[{EXTRAS[name]}]"'
-    return f"needs the package {package}, which is not installed"
+    return f"needs the package {shown(package)}, which is not installed"

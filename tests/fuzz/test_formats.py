@@ -174,6 +174,8 @@ FOUND = [
     ("scenario", b"[" * 60_000),
     ("scenario", b"*a" + b"9" * 5000),
     ("scenario", GRID.replace(b"[0, 3]", b"[0, 1000000]")),
+    ("recipe", RECIPE.replace(b"blobs: {size", b"blobs" + b":bs" * 300 + b": {size")),
+    ("scenario", GRID.replace(b"astar,", b'"json:' + b"x" * 3000 + b'",')),
     ("card", CARD.replace('"Vin"', f'"{"V" * 3000}"').encode()),
     ("card", CARD.replace('"settings": {', f'"settings": {{"{"x" * 3000}": 1, ').encode()),
     ("card", CARD.replace('"settings": {', f'"settings": {{"iterations": "{"x" * 3000}", ').encode()),
