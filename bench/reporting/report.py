@@ -16,7 +16,6 @@ from fogbench.bench.reporting.sections import headline, page, sections
 from fogbench.bench.reporting.statistics import holm
 from fogbench.bench.reporting.tables import print_table
 from fogbench.worlds.mistake import Mistake
-from fogbench.worlds.types import Outcome
 
 READS = (
     "variant", "kind", "agent", "episode", "outcome", "steps", "budget_steps", "length", "shortest",
@@ -94,7 +93,7 @@ def write_plots(
 
 
 def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, console: Console) -> None:
-    """Print the results, means over trainings, comparisons, who was skipped, and who crashed or hung.
+    """Print the results, means over trainings, comparisons, which episodes failed, and who was skipped.
 
     Nothing is cut off.
 
@@ -105,9 +104,8 @@ def print_tables(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, c
         console: where to.
     """
     print_table("Results", headline(table, scenario, short=True), console)
-    broken = frame[frame["outcome"].isin([Outcome.CRASHED.name, Outcome.HUNG.name])]
-    for section in sections(frame, table, scenario, broken):
-        print_table(section.name, section.lines, console)
+    for title, lines in sections(frame, table, scenario).items():
+        print_table(title, lines, console)
 
 
 def _answers(frame: pd.DataFrame, scenario: Scenario) -> Iterator[tuple[Any, ...]]:

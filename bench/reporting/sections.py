@@ -1,7 +1,7 @@
 """What a report says, table by table, and `summary.md`, the page that holds them all."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import pandas as pd
 
@@ -111,25 +111,15 @@ def columns(scenario: Scenario) -> Lines:
     return Lines(["column", "in summary.csv", "unit", "better", "over", "what it says"], rows)
 
 
-class Section(NamedTuple):
-    """A table of a report, beside the results."""
-
-    name: str
-    """In a terminal."""
-    title: str
-    """On a page."""
-    lines: Lines
-
-
-def sections(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario, failed: pd.DataFrame) -> list[Section]:
-    """All of a report that have a row, in order; of the episodes `failed`, it says how."""
-    found = (
-        Section("Trainings", "Trainings of one network: mean, lowest and highest", trainings(frame, table, scenario)),
-        Section("Paired", "Paired with the reference agent, on the same episodes", comparisons(table, scenario)),
-        Section("Crashed or hung", "Failures", failures(failed)),
-        Section("Skipped", "Skipped", skipped(scenario)),
-    )
-    return [section for section in found if section.lines.rows]
+def sections(frame: pd.DataFrame, table: pd.DataFrame, scenario: Scenario) -> dict[str, Lines]:
+    """The tables of a report beside the results, by their titles, in order; those without a row are left out."""
+    found = {
+        "Trainings of one network: mean, lowest and highest": trainings(frame, table, scenario),
+        "Paired with the reference agent, on the same episodes": comparisons(table, scenario),
+        "Failures": failures(frame),
+        "Skipped": skipped(scenario),
+    }
+    return {title: lines for title, lines in found.items() if lines.rows}
 
 
 def page(
@@ -144,8 +134,8 @@ def page(
         READING + (f" Published: {escaped(source)}.\n" if source else "\n"),
         *(f"![{plot.removesuffix('.png').replace('_', ' ')}]({plot})\n" for plot in plots),
     ]
-    for section in sections(frame, table, scenario, frame):
-        parts += [f"## {section.title}\n", markdown(section.lines)]
+    for title, lines in sections(frame, table, scenario).items():
+        parts += [f"## {title}\n", markdown(lines)]
     parts += ["## How it was measured\n", "".join(f"- {escaped(fact)}\n" for fact in _facts(run))]
     parts += ["## What the columns say\n", markdown(columns(scenario))]
     return "\n".join(parts)

@@ -165,6 +165,14 @@ def test_the_terminal_shows_results_comparisons_and_who_did_not_play(
     assert max(map(len, console.file.getvalue().splitlines())) <= 120
 
 
+def test_the_terminal_names_every_failing_episode(recorded: Recorded, scenario: Scenario) -> None:
+    """So that one can be replayed, however it failed."""
+    frame, console = recorded({"episode": 0}, {"episode": 1, "outcome": "TIMEOUT"}), Console(file=StringIO())
+    print_tables(frame, summary(frame, scenario), scenario, console)
+    lines = [" ".join(line.split()) for line in console.file.getvalue().splitlines()]
+    assert "short astar TIMEOUT 1 1" in lines
+
+
 def test_long_details_are_cut_to_a_line(recorded: Recorded) -> None:
     """A traceback of a thousand letters becomes one line of 200."""
     frame = recorded({"outcome": "CRASHED", "detail": "a\n  b " + "c" * 1000})
