@@ -116,7 +116,7 @@ def list_(
         ),
     ] = None,
 ) -> None:
-    """List the scenarios, map families, agents and ways to learn; with NAME, the settings that it has."""
+    """List the scenarios, map families, agents, ways to learn, recipes and checkpoints; with NAME, its settings."""
     if name is None:
         from fogbench.bench.listing import show
 

@@ -1,4 +1,8 @@
-"""What is at hand: scenarios, map families, agents and learners, told without importing any of them."""
+"""What is at hand, told without importing any of it."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
 
 import yaml
 from rich.console import Console
@@ -6,24 +10,33 @@ from rich.table import Table
 from rich.text import Text
 
 from fogbench.bench.reading.tables import LEARNER, agents, families, first_sentence
-from fogbench.bench.shipped import find, folder
+from fogbench.bench.shipped import checkpoints, find, folder, recipes
 
 
 def show() -> None:
     """Print a table of each, and how to see more."""
     console = Console()
-    console.print(_scenarios())
+    console.print(_pages("Scenarios", {str(path.relative_to(folder()).with_suffix("")): path for path in find(None)}))
     console.print(_classes("Map families", families()))
     console.print(_classes("Agents", agents()))
     console.print(_classes("Ways to learn", LEARNER.targets()))
+    console.print(_pages("Recipes", recipes()))
+    console.print(_checkpoints())
     console.print(Text("`fogbench list NAME` shows the settings of a name; so do sensor, budget, scenario and recipe."))
 
 
-def _scenarios() -> Table:
-    table = Table("scenario", "about", title="Scenarios")
-    for path in find(None):
+def _pages(title: str, paths: Mapping[str, Path]) -> Table:
+    table = Table("name", "about", title=title)
+    for name, path in paths.items():
         text = yaml.load(path.read_text(encoding="utf-8"), yaml.CSafeLoader)
-        table.add_row(str(path.relative_to(folder()).with_suffix("")), Text(text["about"]))
+        table.add_row(name, Text(text["about"]))
+    return table
+
+
+def _checkpoints() -> Table:
+    table = Table("name", "network", title="Checkpoints")
+    for name, card in checkpoints().items():
+        table.add_row(name, json.loads(card.read_text("utf-8"))["network"])
     return table
 
 

@@ -14,6 +14,7 @@ from fogbench.bench.reading.plugins import PluginError, load, load_conditions, l
 from fogbench.bench.reading.recipe import RecipePage
 from fogbench.bench.reading.tables import AGENT, FAMILY, KIND, LEARNER
 from fogbench.bench.reading.tables import Table as Names
+from fogbench.bench.shipped import checkpoints, find, recipes
 from fogbench.worlds.mistake import Mistake, Unavailable, unknown
 from fogbench.worlds.reading.shapes import Schema, Shape, shape
 from fogbench.worlds.settings import Settings
@@ -102,8 +103,15 @@ def _named(name: str) -> list[type[Settings]]:
             *PAGES,
             *dict.fromkeys(own for own, _ in blocks),
         ]
-        raise unknown("list", name, names)
+        raise _file_of(name) or unknown("list", name, names)
     return found
+
+
+def _file_of(name: str) -> Mistake | None:
+    """That a name is that of a shipped file, if it is: what it says stands there."""
+    shipped = {path.stem: path for path in find(None)}
+    paths = [str(files[name]) for files in (shipped, recipes(), checkpoints()) if name in files]
+    return Mistake(f"{name}: the name of a file, which has no settings; read {' or '.join(paths)}.") if paths else None
 
 
 def _blocks() -> list[tuple[str, type[Settings]]]:

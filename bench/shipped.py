@@ -1,5 +1,6 @@
 """Where the scenarios are: those that come with the project, and those a user names."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import typer
@@ -7,8 +8,8 @@ import typer
 from fogbench import learned
 from fogbench.worlds.mistake import Mistake, encodable, meant, near, one_of
 
-RECIPES = Path(learned.__file__).with_name("recipes")
-"""Where the recipes are that go by a name alone."""
+RECIPES, CHECKPOINTS = map(Path(learned.__file__).with_name, ("recipes", "checkpoints"))
+"""Where the recipes and the trained weights are that go by a name alone."""
 
 
 def folder() -> Path:
@@ -32,18 +33,27 @@ def find(names: list[str] | None) -> list[Path]:
     return list(found.values())
 
 
+def recipes() -> dict[str, Path]:
+    """The shipped recipes by their names."""
+    return {file.stem: file for file in sorted(RECIPES.glob("*.yaml"))}
+
+
+def checkpoints() -> dict[str, Path]:
+    """The cards of the shipped checkpoints by their names."""
+    return {file.stem: file for file in sorted(CHECKPOINTS.glob("*.json"))}
+
+
 def find_recipe(name: str) -> Path:
     """The recipe file that a name stands for.
 
     Raises:
         Mistake: it stands for nothing; the nearest shipped one is told.
     """
-    shipped = {file.stem: file for file in sorted(RECIPES.glob("*.yaml"))}
+    shipped = recipes()
     path = shipped.get(name, Path(name)) if not Path(name).is_file() else Path(name)
     if path.is_file():
         return path
-    expected = f"a recipe file, or {one_of(shipped)}"
-    raise Mistake(f"{name}: no such file; give {expected}.{meant(near(name, shipped))}")
+    raise _missing(name, "a recipe file", shipped)
 
 
 def _pages(place: Path) -> list[Path]:
@@ -74,7 +84,19 @@ def _find_one(name: str) -> list[Path]:
     shipped = {file.stem: file for file in sorted(folder().rglob("*.yaml"))}
     if name in shipped:
         return [shipped[name]]
-    file = f"{name}.yaml"
-    likely = file if Path(file).is_file() else near(name, shipped)
-    expected = f"a scenario file, a folder of them, or {one_of(shipped)}"
-    raise Mistake(f"{name}: no such file; give {expected}.{meant(likely)}")
+    raise _missing(name, "a scenario file, a folder of them", shipped)
+
+
+def _missing(name: str, expected: str, shipped: Iterable[str]) -> Mistake:
+    """There is no such file; the nearest name is told first, since those that ship are many."""
+    own = {file.stem: str(file) for file in _beside(Path(name))}
+    likely = near(Path(name).stem, [*own, *shipped])
+    return Mistake(f"{name}: no such file.{meant(own.get(likely, likely))} Give {expected}, or {one_of(shipped)}.")
+
+
+def _beside(path: Path) -> list[Path]:
+    """The YAML files in the folder of a path, if it can be read."""
+    try:
+        return sorted(path.parent.glob("*.y*ml"))
+    except OSError:
+        return []

@@ -75,8 +75,8 @@ def read_recipe(text: str, path: Path) -> Recipe:
     page = parse(text, faults)
     if page is None:
         raise wrong(faults, path)
-    if flat := _flat(page):
-        raise wrong([flat], path)
+    if other := _other(page):
+        raise wrong([other], path)
     read = _read(page, path.parent, faults)
     if faults:
         raise wrong(faults, path)
@@ -139,8 +139,10 @@ def _refuse(reading: Here, network: "Policy", path: Path) -> None:
         raise Mistake(f"{path}: network: got one that plays {', '.join(sorted(network.kinds))}; expected {plays}.")
 
 
-def _flat(page: Value) -> Fault | None:
-    """The first setting of a learner that stands beside the keys of a recipe, as all did once."""
+def _other(page: Value) -> Fault | None:
+    """That a page is a scenario, or has a setting of a learner beside the keys of a recipe, as all had once."""
+    if "agents" in page.fields() and "network" not in page.fields():
+        return page.wrong_key("agents", "a recipe, with a network; a scenario is for `fogbench run`")
     for name, place in LEARNER.shipped.items():
         for key in page.fields():
             if key in load(LEARNER, name, place).model_fields and key not in RecipePage.model_fields:

@@ -84,6 +84,8 @@ def test_a_class_of_one_s_own_has_a_page_too(
     ("name", "told"),
     [
         ("macm", "list: got macm; expected one of "),
+        ("grid", "grid: the name of a file, which has no settings; read "),
+        ("macn-grid", "macn-grid: the name of a file, which has no settings; read "),
         ("./mine.py:Mine", "./mine.py:Mine: expected an existing file (looked for "),
         ("no_such:Mine", "no_such:Mine: expected a module that is installed; there is no no_such."),
     ],

@@ -39,7 +39,7 @@ def test_a_name_of_nothing_is_told_with_the_nearest(name: str, near: str) -> Non
         find([name])
     shipped = ", ".join(path.stem for path in sorted(folder().rglob("*.yaml")))
     assert str(error.value) == (
-        f"{name}: no such file; give a scenario file, a folder of them, or one of {shipped}. Did you mean {near}?"
+        f"{name}: no such file. Did you mean {near}? Give a scenario file, a folder of them, or one of {shipped}."
     )
 
 

@@ -93,7 +93,10 @@ def test_mistakes_are_lines(train: Fogbench) -> None:
     shipped = ", ".join(file.stem for file in sorted(RECIPES.glob("*.yaml")))
     code, _, err = train("macn-gird")
     assert code == 2
-    assert err == (f"macn-gird: no such file; give a recipe file, or one of {shipped}. Did you mean macn-grid?\n")
+    assert err == (f"macn-gird: no such file. Did you mean macn-grid? Give a recipe file, or one of {shipped}.\n")
+    Path("scene.yaml").write_text("name: scene\nmaps: {maze: {size: 9}}\nagents: [astar]\n")
+    told = "got agents; expected a recipe, with a network; a scenario is for `fogbench run`"
+    assert train("scene.yaml")[::2] == (2, f"scene.yaml:3:1  {told}.\n")
     Path("small.yaml").write_text(RECIPE.replace("batch: 2}}", "batch: two}}"))
     assert train("small.yaml")[::2] == (
         2,
