@@ -10,7 +10,7 @@ from fogbench.bench.playing.enough import mistakes
 from fogbench.bench.playing.guests import drawn, guests
 from fogbench.bench.reading.scenario import Scenario, ScenarioError, Variant
 from fogbench.bench.several import each, read_each, say
-from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.mistake import Mistake, counted
 from fogbench.worlds.types import Noted
 
 
@@ -73,7 +73,7 @@ def refuse_idle(scenario: Scenario) -> None:
     skipped = {entry.label: entry.skipped for variant in scenario.variants for entry in variant.agents}
     if all(skipped.values()):
         reasons = "; ".join(f"{label} {reason}" for label, reason in skipped.items())
-        raise Mistake(f"{scenario.path}: got no agent that can play here ({reasons}).")
+        raise Mistake(f"{scenario.path}: no agent can play here ({reasons}).")
 
 
 def _outlook(variant: Variant) -> Iterator[str]:
@@ -81,8 +81,8 @@ def _outlook(variant: Variant) -> Iterator[str]:
     world = drawn(variant, 0)
     playing = sum(not entry.skipped for entry in variant.agents)
     yield (
-        f"  {variant.name}: {variant.episodes} episodes of {playing} agents; "
-        f"the first has an optimum of {world.shortest():g} and a budget of {world.task.budget.steps} steps"
+        f"  {variant.name}: {counted(variant.episodes, 'episode')} of {counted(playing, 'agent')}; "
+        f"the first has an optimum of {world.shortest():g} and a budget of {counted(world.task.budget.steps, 'step')}"
     )
     yield from (f"    {note}" for note in notes(variant))
     for entry in variant.agents:

@@ -141,8 +141,8 @@ def _machine() -> Table:
     table.add_row("Python", f"{platform.python_version()} ({sys.executable})")
     table.add_row("system", f"{platform.system()} {platform.machine()}")
     table.add_row("CPUs at hand", str(len(os.sched_getaffinity(0))))
-    for pool in threadpool_info():
-        table.add_row(f"threads of {pool['internal_api']} (main process)", str(pool["num_threads"]))
+    for pool in threadpool_info():  # one library may be there twice
+        table.add_row(f"threads of {Path(pool['filepath']).name} (main process)", str(pool["num_threads"]))
     maps = os.environ.get("FOGBENCH_MAPS") or "not set: the scenarios under real/ are skipped"
     table.add_row("FOGBENCH_MAPS", maps)
     return table

@@ -92,7 +92,7 @@ def _watch(variant: Variant, entry: Entry, row: Mapping[str, Any]) -> Iterator[t
         seen = glimpse(agent, moment.observation)
         if seen.action != moment.action:
             raise Mistake(
-                f"episode {episode} of {entry.label} in {variant.name}: got {_called(seen.action)} at step "
+                f"episode {episode} of {entry.label} in variant {variant.name}: got {_called(seen.action)} at step "
                 f"{moment.observation.step}; expected {_called(moment.action)}, as recorded (on another machine?)."
             )
         yield moment, seen
@@ -106,7 +106,7 @@ def _called(action: Any) -> str:
 def _memory(variant: Variant, entry: Entry, row: Mapping[str, Any], out: Path) -> str:
     """Draw what is remembered along an episode."""
     watched = [(moment, seen.held) for moment, seen in _watch(variant, entry, row)]
-    told = plain(f"{entry.label} in {variant.name}, episode {row['episode']}")
+    told = plain(f"{entry.label} in variant {variant.name}, episode {row['episode']}")
     if not watched:
         return f"{told}: no decision is recorded, so there is no figure of its memory."
     if not watched[0][1]:
@@ -129,7 +129,7 @@ def _spaces(variant: Variant, entry: Entry, rows: pd.DataFrame, out: Path) -> st
         return f"No t-SNE of {told}; expected {LEAST} or more, in two or more: `fogbench run --episodes` records them."
     separable = decisions.separable()
     planes = [(name, embedded(points), separable[name]) for name, points in _tracked(decisions.spaces.items(), "t-SNE")]
-    told = plain(f"{entry.label} in {variant.name}: {told}")
+    told = plain(f"{entry.label} in variant {variant.name}: {told}")
     chance = f"always the commonest move: {100 * decisions.commonest():.1f} %"
     meaning = f"Panel title: nearest-neighbour accuracy ({chance})"
     draw(partial(spaces, planes, decisions, f"{told}\n{meaning}"), out)

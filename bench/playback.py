@@ -13,7 +13,7 @@ from fogbench.bench.playing.replay import End, Moment, retrace, verify
 from fogbench.bench.playing.selection import chosen_row, chosen_variant
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.bench.reporting.plain import plain
-from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.mistake import Mistake, counted
 from fogbench.worlds.types import Outcome
 
 PANELS, FRAMES = 5, 300
@@ -40,15 +40,16 @@ def replay_recorded(
         drawn, names, end = _pictures(retrace(variant, row), steps)
     except Exception as error:
         told = f"got {type(error).__name__}: {error}; expected a world that can be drawn"
-        raise Mistake(f"{agent} in {variant.name}, episode {episode}: {told}.") from error
+        raise Mistake(f"{agent} in variant {variant.name}, episode {episode}: {told}.") from error
     verify(row, end)
-    told = f"{agent} in {variant.name}, episode {episode}: {row['steps']} steps, optimum {row['shortest']:g}."
+    way = f"{counted(row['steps'], 'step')}, optimum {row['shortest']:g}"
+    told = f"{agent} in variant {variant.name}, episode {episode}: {way}. {Outcome[row['outcome']].value}"
     if kind == ".png":
         strip(drawn, names, told, out)
     else:
         film(drawn, names, out)
     checked = "It ends as recorded" if row["steps"] else "Nothing was recorded to verify"
-    lines = f"{told} {Outcome[row['outcome']].value} {row['detail']}", f"{checked}. Drawn in {out}"
+    lines = f"{told} {row['detail']}", f"{checked}. Drawn in {out}"
     return "\n".join(filter(None, [*map(plain, lines), differences(folder, scenario)]))
 
 

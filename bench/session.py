@@ -40,7 +40,7 @@ OUTDATED = (
 """What a user is told in place of a report without a number."""
 
 HUNG = (
-    f"{{agent}} hung in its first {FIRST} episodes of {{variant}}, and was not asked for the other {{count}}. "
+    f"{{agent}} hung in its first {FIRST} episodes of variant {{variant}}, and was not asked for the other {{count}}. "
     "To go on, mend it, or give it more time by `budget: {{hard_seconds: ...}}`, and run again."
 )
 """What a user is told of episodes that were left out."""
@@ -89,7 +89,8 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
         frame = store.read(folder, scenario, READS, versions_of(folder))
         lines = comparisons(summary(frame, scenario), scenario)
         if not lines.rows:
-            raise Mistake(f"{folder}: got no episodes of {label} beside those of another agent; expected both.")
+            told = f"no episodes of {label} are recorded beside those of another agent; use `fogbench run` first"
+            raise Mistake(f"{folder}: {told}.")
         print_table("Paired", lines, console)
         page = folder / f"against-{stems(labels)[label]}.md"
         store.write(page, f"# {escaped(scenario.name)}, against {escaped(label)}\n\n{markdown(lines)}".encode())

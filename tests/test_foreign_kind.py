@@ -96,7 +96,7 @@ def test_a_scenario_that_mixes_kinds_is_checked(command: Any) -> None:
     """Each variant has the blocks of its kind, and says who cannot play there."""
     code, text = command("check", "mixed.yaml")
     assert code == 0, text
-    assert text.count("6 episodes of 1 agents") == 3
+    assert text.count("6 episodes of 1 agent") == 3
     assert "astar is skipped: it plays grid worlds, not ring" in text
     assert "walker is skipped: it plays ring worlds, not grid" in text
 
@@ -235,7 +235,7 @@ def test_a_kind_that_lacks_a_package_is_skipped(command: Any, site: Path) -> Non
         assert code == 0, told
         assert "ring is skipped: " in told
         assert "needs the package fog_lamp, which is not installed" in told
-        assert "grid: 6 episodes of 1 agents" in told
+        assert "grid: 6 episodes of 1 agent" in told
     finally:
         world.write_text(text)
 

@@ -72,5 +72,5 @@ class Tasks(Settings):
     def wanted(self, unit: str) -> str:
         """The bounds, in words for an error."""
         if self.distance is None:
-            return "an optimum inside the step budget"
-        return f"an optimum of {self.distance[0]} to {self.distance[1]} {unit}"
+            return "an optimum inside the step budget (set by `budget: {steps: ...}`)"
+        return f"an optimum of {self.distance[0]} to {self.distance[1]} {unit} (set by `tasks: {{distance: ...}}`)"

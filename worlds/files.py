@@ -44,7 +44,7 @@ def read(path: Path) -> bytes:
 
 
 def _unreadable(path: Path, error: OSError) -> MapError:
-    return MapError(f"{path}: got {(error.strerror or str(error)).lower()}; expected a file to read")
+    return MapError(f"{path}: {(error.strerror or str(error)).lower()}; give a file that can be read")
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,11 @@ def shown(text: str, most: int = SHOWN) -> str:
     return text if len(text) <= most else f"{text[:most]}..."
 
 
+def counted(count: int, noun: str) -> str:
+    """So many of something, in words: `1 task`, `2 tasks`."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def near(name: str, names: Iterable[str]) -> str:
     """The name that is most like the given one; empty if none is."""
     return next(iter(get_close_matches(name, names, n=1)), "")

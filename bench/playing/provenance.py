@@ -62,7 +62,7 @@ def read_run(folder: Path) -> dict[str, Any]:
     """
     path = folder / "run.json"
     if not path.exists():
-        raise Mistake(f"{folder}: got no recorded run; expected `fogbench run` to come first.")
+        raise Mistake(f"{folder}: no run is recorded; use `fogbench run` first.")
     try:
         text = path.read_text("utf-8")
         _Run.model_validate_json(text)

@@ -50,8 +50,8 @@ def chosen_row(scenario: Scenario, variant: Variant, agent: str, episode: int, f
     count = store.stale(folder, scenario, versions_of(folder)).get((variant.name, agent))
     span = f"from {rows['episode'].min()} to {rows['episode'].max()}"
     lacking = (
-        f"--episode: got {episode}; expected one of the {len(rows)} of {agent} in {variant.name}, {span}."
+        f"--episode: got {episode}; expected one of the {len(rows)} of {agent} in variant {variant.name}, {span}."
         if len(rows)
-        else f"{folder}: got no episode of {agent} in {variant.name}; expected some, as `fogbench run` records them."
+        else f"{folder}: no episode of {agent} in variant {variant.name} is recorded; use `fogbench run` first."
     )
     raise Mistake(lacking + (f" {store.STALE.format(count=count, agent=agent, variant=variant.name)}" if count else ""))

@@ -77,7 +77,7 @@ def test_more_episodes_than_tasks_are_told(mistakes: Callable[..., list[str]]) -
         SCENARIO.replace("episodes: 1", "episodes: 5").replace("  third", "  # third").replace("  fourth", "  # fourth")
     )
     Path("many.yaml").write_text(text)
-    told = f"{Path('ok.scen').absolute()}: got 1 task; expected 5, one for each episode."
+    told = f"{Path('ok.scen').absolute()}: 1 task for 5 episodes; set `episodes: 1`, or give more tasks."
     assert mistakes("many.yaml") == [f"many.yaml:6:18  variants.first.maps.movingai: {told}"]
 
 

@@ -95,7 +95,10 @@ def test_who_plays_alone_is_compared_with_nobody(fogbench: Fogbench) -> None:
     fogbench("run", "small.yaml")
     code, _, err = fogbench("report", "small.yaml", "--against", "astar")
     assert code == 2
-    assert err == "results/small: got no episodes of astar beside those of another agent; expected both.\n"
+    assert (
+        err
+        == "results/small: no episodes of astar are recorded beside those of another agent; use `fogbench run` first.\n"
+    )
 
 
 def test_results_of_another_machine_stay(fogbench: Fogbench, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,7 +169,10 @@ def test_what_cannot_be_played_is_told_before_anything_of_it_is(fogbench: Fogben
     write("fine")
     impossible = SMALL.format(name="bad", agents="[astar]") + "tasks: {distance: [90, 99]}\n"
     Path("bad.yaml").write_text(impossible)
-    told = "bad.yaml:4:8  maps.blobs: Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps.\n"
+    told = (
+        "bad.yaml:4:8  maps.blobs: Blobs: no task with an optimum of 90 to 99 cells (set by `tasks: {distance: ...}`) "
+        "was found on 1000 maps.\n"
+    )
     assert fogbench("check", "bad.yaml", "fine.yaml") == (2, "", told)
     code, out, err = fogbench("run", "bad.yaml", "fine.yaml")
     assert (code, err, "2 were played now" in out) == (2, told, True)

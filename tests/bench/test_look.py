@@ -62,12 +62,14 @@ def test_figures_of_recorded_networks(
     memory, *lines, spaces = look_inside(played, "long", agent, 1, tmp_path / "store").splitlines()
     drawn = [tmp_path / "store" / f"{kind}-long-{name}.png" for kind in ("memory", "tsne")]
     if parts:
-        assert memory == f"{agent} in long, episode 1. Drawn in {drawn[0]}"
+        assert memory == f"{agent} in variant long, episode 1. Drawn in {drawn[0]}"
         assert [line.split()[1] for line in lines if line][2:] == parts
     else:
-        assert memory == f"{agent} in long, episode 1: it remembers nothing, so there is no figure of its memory."
+        assert (
+            memory == f"{agent} in variant long, episode 1: it remembers nothing, so there is no figure of its memory."
+        )
         assert not drawn[0].exists()
-    assert spaces.startswith(f"{agent} in long: ")
+    assert spaces.startswith(f"{agent} in variant long: ")
     assert "in 3 episodes. Nearest-neighbour accuracy: raw image " in spaces
     assert spaces.endswith(f" %). Drawn in {drawn[1]}")
     for file in drawn[not parts :]:
@@ -91,7 +93,7 @@ def test_a_network_without_a_plan_is_drawn_without_it(
 def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_path: Path) -> None:
     """An episode without decisions; too few for t-SNE."""
     memory, _ = look_inside(played, "long", "macn", 3, tmp_path / "store").splitlines()
-    assert memory == "macn in long, episode 3: no decision is recorded, so there is no figure of its memory."
+    assert memory == "macn in variant long, episode 3: no decision is recorded, so there is no figure of its memory."
     short = tunnels.variants[0]
     with recording(tmp_path / "few", ()) as recorder:
         recorder.append(play(tunnels, short, short.agents[3], 0, 1))
@@ -134,9 +136,9 @@ def test_what_was_not_recorded(played: Scenario, tmp_path: Path) -> None:
         (
             "short",
             0,
-            f"{tmp_path}/store: got no episode of vin in short; expected some, as `fogbench run` records them.",
+            f"{tmp_path}/store: no episode of vin in variant short is recorded; use `fogbench run` first.",
         ),
-        ("long", 7, "--episode: got 7; expected one of the 3 of vin in long, from 0 to 2."),
+        ("long", 7, "--episode: got 7; expected one of the 3 of vin in variant long, from 0 to 2."),
         ("lang", 0, "--variant: got lang; expected one of short, long. Did you mean long?"),
     ):
         with pytest.raises(Mistake) as caught:
@@ -155,7 +157,7 @@ def test_a_record_of_other_decisions_is_refused(tunnels: Scenario, tmp_path: Pat
     with pytest.raises(Mistake) as caught:
         look_inside(tunnels, None, "vin", 0, tmp_path / "store")
     assert str(caught.value) == (
-        f"episode 0 of vin in short: got {move.name} at step 1; expected {other.name}, as recorded "
+        f"episode 0 of vin in variant short: got {move.name} at step 1; expected {other.name}, as recorded "
         "(on another machine?)."
     )
     assert not list((tmp_path / "store").glob("*.png"))

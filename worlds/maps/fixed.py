@@ -5,6 +5,7 @@ import numpy as np
 from fogbench.worlds.maps.cells import passable
 from fogbench.worlds.maps.distances import FAR, distances
 from fogbench.worlds.maps.layout import CellConditions, Layout
+from fogbench.worlds.mistake import counted
 from fogbench.worlds.types import Array, Cell, MapError, World
 
 ONE_TASK = "all episodes are one and the same task: intervals and tests tell of luck alone, not of other tasks"
@@ -21,7 +22,12 @@ def both_or_neither(start: object, goal: object) -> None:
         raise ValueError("start and goal, or neither")
 
 
-def fixed(map_: str, blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) -> World:
+ENDS = ("start", "goal")
+
+
+def fixed(
+    map_: str, blocked: Array, start: Cell, goal: Cell, conditions: CellConditions, ends: tuple[str, str] = ENDS
+) -> World:
     """The world of a fixed task.
 
     Args:
@@ -30,6 +36,7 @@ def fixed(map_: str, blocked: Array, start: Cell, goal: Cell, conditions: CellCo
         start: may lie outside of the map, as `goal`.
         goal: of the task.
         conditions: of the scenario.
+        ends: what start and goal are called in errors.
 
     Raises:
         MapError: the task does not fit; the text says which end of it, and why.
@@ -37,14 +44,14 @@ def fixed(map_: str, blocked: Array, start: Cell, goal: Cell, conditions: CellCo
     inside = all(0 <= n < side for cell in (start, goal) for n, side in zip(cell, blocked.shape, strict=True))
     world = conditions.world(Layout(blocked), start, goal) if inside else None
     if world is None:
-        raise MapError(f"{map_}: {misfit(blocked, start, goal, conditions)}")
+        raise MapError(f"{map_}: {misfit(blocked, start, goal, conditions, ends)}")
     return world
 
 
-def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) -> str:
+def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions, ends: tuple[str, str] = ENDS) -> str:
     """Why a task does not fit its map [H, W] or the conditions, in words for an error."""
     height, width = blocked.shape
-    for name, (row, column) in (("start", start), ("goal", goal)):
+    for name, (row, column) in zip(ends, (start, goal), strict=True):
         place = f"{name} [{row}, {column}]"
         if not (0 <= row < height and 0 <= column < width):
             return f"{place}: got a cell outside of the map; expected a row below {height} and a column below {width}"
@@ -52,7 +59,8 @@ def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) 
             return f"{place}: got an obstacle; expected a free cell"
     if start == goal:
         return f"{place}: got the cell of the start; expected another one"
-    way = int(distances(np.asarray(blocked), start, goal)[goal])
-    if way == FAR:
-        return f"{place}: got no path from the start {list(start)}; expected one"
-    return f"{place}: got a shortest path of {way} cells from the start {list(start)}; expected {conditions.wanted()}"
+    cells = int(distances(np.asarray(blocked), start, goal)[goal])
+    if cells == FAR:
+        return f"{place}: no path leads here from the start {list(start)}"
+    way = f"a shortest path of {counted(cells, 'cell')} from the start {list(start)}"
+    return f"{place}: got {way}; expected {conditions.wanted()}"

@@ -39,7 +39,7 @@ def test_a_run_is_read_as_it_was_noted(make: Any, tmp_path: Path) -> None:
     """Reading gives the whole file; where nothing was run there is one line that says what to do."""
     with pytest.raises(Mistake) as caught:
         read_run(tmp_path)
-    assert str(caught.value) == f"{tmp_path}: got no recorded run; expected `fogbench run` to come first."
+    assert str(caught.value) == f"{tmp_path}: no run is recorded; use `fogbench run` first."
     with noted(tmp_path, make(), 3):
         assert read_run(tmp_path) == json.loads((tmp_path / "run.json").read_text())
 

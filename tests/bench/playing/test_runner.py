@@ -129,7 +129,7 @@ def test_a_first_world_that_cannot_be_made_is_told_before_anything_is_played(mak
     impossible = make(variants={"fine": budget, "far": {**budget, "tasks": {"distance": [90, 99]}}})
     with pytest.raises(ScenarioError) as caught:
         run(impossible, tmp_path / "store", 2, silent)
-    told = "Blobs: no task with an optimum of 90 to 99 cells was found on 1000 maps."
+    told = "Blobs: no task with an optimum of 90 to 99 cells (set by `tasks: {distance: ...}`) was found on 1000 maps."
     assert str(caught.value) == f"{impossible.path}:4:3  maps.blobs: {told}"
     assert facts(impossible, tmp_path / "store").empty
 

@@ -262,7 +262,7 @@ def test_worlds_that_cannot_be_played_are_told_at_once(
     made = recipe()
     near, far = made.lessons[0].worlds, Worlds(MAPS, conditions(distance=(50, 60)))
     refuse_unplayable(made)
-    none = "Blobs: no task with an optimum of 50 to 60 cells was found on 1000 maps."
+    none = "Blobs: no task with an optimum of 50 to 60 cells (set by `tasks: {distance: ...}`) was found on 1000 maps."
     for changed, place in (
         (replace(made, held_out={"near": near, "far": far}), "far"),
         (replace(made, lessons=(Lesson(near, MAPS), Lesson(far, MAPS))), "lesson 2, at first"),

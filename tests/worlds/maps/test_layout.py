@@ -119,8 +119,8 @@ def test_only_tasks_inside_the_bounds_make_a_world() -> None:
 @pytest.mark.parametrize(
     ("blocks", "bounds"),
     [
-        ({"tasks": {"distance": [500, 600]}}, "an optimum of 500 to 600 cells"),
-        ({}, "an optimum inside the step budget"),
+        ({"tasks": {"distance": [500, 600]}}, "an optimum of 500 to 600 cells (set by `tasks: {distance: ...}`)"),
+        ({}, "an optimum inside the step budget (set by `budget: {steps: ...}`)"),
     ],
 )
 def test_a_family_without_a_fitting_task_says_so(blocks: dict[str, Any], bounds: str) -> None:

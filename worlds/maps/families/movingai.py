@@ -13,6 +13,7 @@ from fogbench.worlds.maps.files.octile import read_map
 from fogbench.worlds.maps.files.scen import Trip, read_scen
 from fogbench.worlds.maps.fixed import ONE_TASK, both_or_neither, fixed, misfit
 from fogbench.worlds.maps.layout import CellConditions, CellMaps, Layout
+from fogbench.worlds.mistake import counted
 from fogbench.worlds.reading.positions import Fault
 from fogbench.worlds.settings import Count, MapFile
 from fogbench.worlds.streams import stream
@@ -82,7 +83,15 @@ class MovingAI(CellMaps):
         return [f"{self._scen()}: {note}" for note in notes]
 
     def _scen(self) -> Path:
-        return self.scen or Path(f"{self.map}.scen")
+        """The list of tasks.
+
+        Raises:
+            MapError: the settings name none, and none is beside the map.
+        """
+        beside = Path(f"{self.map}.scen")
+        if self.scen is None and not beside.exists():
+            raise MapError(f"{beside}: no such file; give a list by `scen`, or one task by `start` and `goal`")
+        return self.scen or beside
 
     def _list(self, conditions: CellConditions) -> "TaskList":
         return _task_list(load(self.map), load(self._scen()), conditions)
@@ -118,11 +127,12 @@ class TaskList:
         """Why there are not as many tasks as wanted, after all were looked at."""
         fit, total = len(self.found), len(self.trips)
         if not self.unfit:
-            return f"got {total} {'task' if total == 1 else 'tasks'}; expected {wanted}, one for each episode"
+            lacking = f"{counted(total, 'task')} for {counted(wanted, 'episode')}"
+            return f"{lacking}; set `episodes: {total}`, or give more tasks"
         first = min(self.unfit)
         why = misfit(self.layout.blocked, first.start, first.goal, self.conditions)
-        usable = f"only {fit} of {total} tasks {'is' if fit == 1 else 'are'} usable"
-        return f"{usable}, for {wanted} episodes: line {first.line}: {why}"
+        usable = f"only {fit} of {counted(total, 'task')} {'is' if fit == 1 else 'are'} usable"
+        return f"{usable}, for {counted(wanted, 'episode')}: line {first.line}: {why}"
 
 
 _task_list = lru_cache(maxsize=16)(TaskList)

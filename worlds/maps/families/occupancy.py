@@ -74,7 +74,8 @@ class Occupancy(CellMaps):
         floor_ = _floor(image, header, self.downsample)
         if self.start and self.goal:
             start, goal = (_cell(place, floor_, header, self.downsample) for place in (self.start, self.goal))
-            return fixed(str(self.map), floor_.blocked, start, goal, conditions)
+            ends = (_told("start", self.start), _told("goal", self.goal))
+            return fixed(str(self.map), floor_.blocked, start, goal, conditions, ends)
         for _ in range(TRIES):
             found = fit(Layout(floor_.blocked), conditions, rng)
             if found is not None:
@@ -159,6 +160,11 @@ def _cell(place: Point | Cell, floor_: Floor, header: Header, downsample: int) -
     right, up = east * cos(yaw) + north * sin(yaw), north * cos(yaw) - east * sin(yaw)
     row = floor_.height - 1 - _count(up, header.resolution) - floor_.top
     return row // downsample, (_count(right, header.resolution) - floor_.left) // downsample
+
+
+def _told(end: str, place: Point | Cell) -> str:
+    """What an end of a task is called in errors, before its cell."""
+    return f"{end} {{x: {place.x:g}, y: {place.y:g}}}, cell" if isinstance(place, Point) else end
 
 
 def _count(metres: float, resolution: float) -> int:

@@ -22,6 +22,9 @@ from fogbench.worlds.types import Array
 SAVED_UNKNOWN = 205
 """The shade that map_saver writes for unknown cells."""
 
+IMAGES = (b"\x89PNG", b"BM", b"P5", b"P6")
+"""What images begin with."""
+
 TRUTHS = {"true": 1, "yes": 1, "on": 1, "false": 0, "no": 0, "off": 0}
 
 
@@ -94,9 +97,11 @@ def read_header(path: Path, contents: bytes) -> Header:
         page = parse(contents.decode("utf-8-sig"), faults)
     except UnicodeDecodeError as error:
         before = contents[: error.start].replace(b"\r\n", b"\n").split(b"\n")
-        got = f"the byte 0x{contents[error.start]:02x}"
+        got, expected = f"the byte 0x{contents[error.start]:02x}", "UTF-8 text"
+        if contents.startswith(IMAGES):
+            got, expected = "an image", "the YAML file that names it by `image: ...`"
         page = None
-        faults.append(Fault(len(before), len(before[-1].decode("utf-8", "replace")) + 1, "", got, "UTF-8 text"))
+        faults.append(Fault(len(before), len(before[-1].decode("utf-8", "replace")) + 1, "", got, expected))
     header = read_block(Header, page, {"folder": path.parent}, faults) if page else None
     faults += (
         [each.wrong(f"the variable {each.unset} to be set") for each in page.below() if each.unset] if page else []

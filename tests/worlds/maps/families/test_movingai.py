@@ -108,11 +108,16 @@ def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
     maps = family(tmp_path, scen=tmp_path / "y.scen")
     with pytest.raises(MapError) as error:
         maps.sample(RNG, 0, conditions(1, 100))
-    assert str(error.value) == f"{tmp_path}/y.scen: got no such file or directory; expected a file to read"
-    with pytest.raises(MapError, match=r"y\.scen: got no such file or directory; expected a file to read"):
+    assert str(error.value) == f"{tmp_path}/y.scen: no such file or directory; give a file that can be read"
+    with pytest.raises(MapError, match=r"y\.scen: no such file or directory; give a file that can be read"):
         maps.words()
-    with pytest.raises(MapError, match="got is a directory; expected a file to read"):
+    with pytest.raises(MapError, match="is a directory; give a file that can be read"):
         MovingAI(map=tmp_path).tasks(conditions(1, 100), 1)
+    (tmp_path / "x.map.scen").unlink()
+    with pytest.raises(MapError) as error:
+        MovingAI(map=tmp_path / "x.map").words()
+    expected = "give a list by `scen`, or one task by `start` and `goal`"
+    assert str(error.value) == f"{tmp_path}/x.map.scen: no such file; {expected}"
 
 
 def test_a_list_that_is_used_up_is_told_as_such(tmp_path: Path) -> None:
@@ -120,7 +125,7 @@ def test_a_list_that_is_used_up_is_told_as_such(tmp_path: Path) -> None:
     maps = family(tmp_path)
     listed = (tmp_path / "x.map.scen").read_text().splitlines()
     (tmp_path / "x.map.scen").write_text("\n".join(listed[i] for i in (0, 3, 4)))
-    with pytest.raises(MapError, match=r"x\.map\.scen: got 2 tasks; expected 3, one for each episode$"):
+    with pytest.raises(MapError, match=r"x\.map\.scen: 2 tasks for 3 episodes; set `episodes: 2`, or give more tasks$"):
         maps.sample(RNG, 2, conditions(1, 100))
 
 
@@ -189,7 +194,10 @@ def test_a_fixed_task_is_that_of_every_episode(tmp_path: Path) -> None:
         (
             (0, 0),
             (0, 3),
-            "goal [0, 3]: got a shortest path of 3 cells from the start [0, 0]; expected an optimum of 5 to 12 cells",
+            (
+                "goal [0, 3]: got a shortest path of 3 cells from the start [0, 0]; expected an optimum of 5 to 12 "
+                "cells (set by `tasks: {distance: ...}`)"
+            ),
         ),
     ],
 )
@@ -209,7 +217,7 @@ def test_a_fixed_task_that_is_not_connected_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(MapError, match=r"goal \[0, 29\]: got an obstacle; expected a free cell$"):
         maps.sample(RNG, 0, conditions(1, 100))
     maps = maps.model_copy(update={"goal": (1, 29)})
-    with pytest.raises(MapError, match=r"goal \[1, 29\]: got no path from the start \[0, 0\]; expected one$"):
+    with pytest.raises(MapError, match=r"goal \[1, 29\]: no path leads here from the start \[0, 0\]$"):
         maps.sample(RNG, 0, conditions(1, 100))
 
 

@@ -86,12 +86,16 @@ def test_broken_floors_are_one_line(tmp_path: Path) -> None:
 
     maps = family(tmp_path)
     far = text(maps, tasks={"distance": [50, 60]})
-    assert far == f"{tmp_path}/x.yaml: no task with an optimum of 50 to 60 cells was found"
+    bounds = "an optimum of 50 to 60 cells (set by `tasks: {distance: ...}`)"
+    assert far == f"{tmp_path}/x.yaml: no task with {bounds} was found"
     unknown = text(family(tmp_path, "??\n??"))
     assert unknown == f"{tmp_path}/x.pgm: got only unknown cells; expected some that are free"
     (tmp_path / "x.pgm").unlink()
-    assert text(maps) == f"{tmp_path}/x.pgm: got no such file or directory; expected a file to read"
-    assert text(Occupancy(map=tmp_path / "y.yaml")).startswith(f"{tmp_path}/y.yaml: got no such file")
+    assert text(maps) == f"{tmp_path}/x.pgm: no such file or directory; give a file that can be read"
+    assert text(Occupancy(map=tmp_path / "y.yaml")).startswith(f"{tmp_path}/y.yaml: no such file")
+    (tmp_path / "y.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    pictured = f"{tmp_path}/y.png:1:1  got an image; expected the YAML file that names it by `image: ...`."
+    assert text(Occupancy(map=tmp_path / "y.png")) == pictured
 
 
 def plain(path: Path) -> Array:
@@ -179,12 +183,18 @@ def test_a_fixed_task_in_metres(
         (
             (0, 0),
             {"x": 1e6, "y": -1e6},
-            "goal [10000004, 9999999]: got a cell outside of the map; expected a row below 4 and a column below 5",
+            (
+                "goal {x: 1e+06, y: -1e+06}, cell [10000004, 9999999]: got a cell outside of the map; "
+                "expected a row below 4 and a column below 5"
+            ),
         ),
         (
             (0, 0),
             (0, 1),
-            "goal [0, 1]: got a shortest path of 1 cells from the start [0, 0]; expected an optimum of 2 to 9 cells",
+            (
+                "goal [0, 1]: got a shortest path of 1 cell from the start [0, 0]; expected an optimum of 2 to 9 cells "
+                "(set by `tasks: {distance: ...}`)"
+            ),
         ),
     ],
 )
