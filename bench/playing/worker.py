@@ -1,8 +1,10 @@
 """A worker process: it reads the scenario itself and answers one task after the other."""
 
 import faulthandler
+import io
 import os
 import signal
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar
@@ -19,7 +21,7 @@ from fogbench.bench.playing.episode import Played
 from fogbench.bench.playing.keys import keys
 from fogbench.bench.playing.loop import ClerkError
 from fogbench.bench.playing.sources import edited
-from fogbench.bench.reading.scenario import Scenario, Variant, read_scenario
+from fogbench.bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario
 from fogbench.bench.reading.variant import Entry
 from fogbench.worlds.types import MapError, Outcome
 
@@ -42,6 +44,7 @@ def serve(
         workers: how many processes run side by side.
     """
     _stand_alone()
+    _print_heedlessly()
     faulthandler.enable(last_words.fileno(), all_threads=False)
     _TOLD.set((text, path, workers))
     threadpool_limits(1)
@@ -56,6 +59,25 @@ def serve(
             if os.getpid() != own:  # a planner has split the process, and its twin comes along
                 os._exit(0)
             pipe.send(answer)
+
+
+class _Heedless(io.FileIO):
+    """A file that may be full, or that nobody reads any more: what cannot be written goes nowhere."""
+
+    def write(self, data: Any) -> int:
+        """Write it, or pretend to."""
+        try:
+            return super().write(data)
+        except OSError:
+            return len(data)
+
+
+def _print_heedlessly() -> None:
+    """Let no print of an agent fail: what becomes of it is no merit or fault of the agent."""
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        place: int | str = number if getattr(sys, name) else os.devnull
+        raw = io.BufferedWriter(_Heedless(place, "w", closefd=False) if place == number else _Heedless(place, "w"))
+        setattr(sys, name, io.TextIOWrapper(raw, "utf-8", "backslashreplace", line_buffering=True))
 
 
 def _stand_alone() -> None:
@@ -100,13 +122,15 @@ def lose(variant: str, agent: str, episode: int, outcome: Outcome, detail: str, 
 
 
 def rehearse(variant: str, agent: str, _episode: int) -> playing.Rehearsed:
-    """Take one decision on a throw-away task; see `fogbench.bench.playing.play.rehearse`."""
-    return playing.rehearse(*_find(variant, agent)[1:])
+    """Take one decision on a throw-away task, by what is right in the scenario."""
+    return playing.rehearse(*_chosen(_readable(*_TOLD.get()[:2]), variant, agent)[1:])
 
 
-def _find(variant_name: str, label: str) -> tuple[Scenario, Variant, Entry]:
-    text, path, _ = _TOLD.get()
-    scenario = _scenario(text, path)
+def _find(variant: str, label: str) -> tuple[Scenario, Variant, Entry]:
+    return _chosen(_scenario(*_TOLD.get()[:2]), variant, label)
+
+
+def _chosen(scenario: Scenario, variant_name: str, label: str) -> tuple[Scenario, Variant, Entry]:
     variant = next(variant for variant in scenario.variants if variant.name == variant_name)
     return scenario, variant, next(entry for entry in variant.agents if entry.label == label)
 
@@ -116,3 +140,13 @@ def _scenario(text: str, path: Path) -> Scenario:
     scenario = read_scenario(text, path)
     keys(scenario)  # of the sources as they were loaded just now
     return scenario
+
+
+@cache
+def _readable(text: str, path: Path) -> Scenario:
+    try:
+        return read_scenario(text, path)
+    except ScenarioError as error:
+        if error.rest is None:
+            raise
+        return error.rest

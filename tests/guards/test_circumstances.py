@@ -21,7 +21,7 @@ time.time = lambda: truth() + (float(os.environ["JUMP"]) if monotonic() - began 
 """
 """A `sitecustomize` in which the system's clock takes a step."""
 
-SLOW = "import time; time.sleep(0.05)\nwith open(LOG, 'a') as log: log.write('x')"
+SLOW = "import time; time.sleep(0.05); print('\u2192')\nwith open(LOG, 'a') as log: log.write('x')"
 TOP = "import os, random, numpy\nLOG = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'log')"
 LUCKY = "return random.choice(free) if numpy.random.random() < 0.2 else min(free, key=near)"
 
@@ -76,6 +76,11 @@ def terminate(desk: Any, run: Any) -> None:
     run.terminate()
 
 
+def unread(desk: Any, run: Any) -> None:
+    """`| head -1`: nobody reads any more what is printed, by the command or by a planner."""
+    run.stdout.close()
+
+
 def idle(desk: Any, run: Any) -> None:
     """A signal that means nothing: the window is resized."""
     os.killpg(run.pid, signal.SIGWINCH)
@@ -112,6 +117,7 @@ ODD = {
     "ctrl-c": Odd(meanwhile=ctrl_c),
     "killed": Odd(meanwhile=kill),
     "terminated": Odd(meanwhile=terminate),
+    "unread": Odd(meanwhile=unread),
     "window resized": Odd(meanwhile=idle),
     "planner edited": Odd(meanwhile=edit("slow.py", "\n\nMORE = 1\n"), refusal="slow.py"),
     "planner saved": Odd(meanwhile=touch),
@@ -185,7 +191,7 @@ def test_odd_circumstances_change_no_row(name: str, desk: Any, plain: pd.DataFra
     if odd.meanwhile:
         desk.wait((desk.folder / "log").exists)
         odd.meanwhile(desk, run)
-    if odd.meanwhile in (kill, terminate):  # it says nothing
+    if odd.meanwhile in (kill, terminate, unread):  # it says nothing
         run.communicate(timeout=30)
         assert not desk.left(run)
     else:
