@@ -29,26 +29,25 @@ def check_all(paths: Sequence[Path]) -> None:
             say(f"  {name} is skipped: {reason}", console)
         refuse_idle(scenario)
 
-    with console.status("Drawing the first worlds, counting tasks"):
+    with console.status("Drawing the first worlds, counting tasks; the first time also compiling, some 15 s"):
         scenarios = _read_sound(paths)
     each(scenarios, console, check)
 
 
 def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
-    """Read scenario files, draw a world of every variant, and let users' agents decide where all else is right."""
+    """Read scenario files, draw a world of every variant, and let users' agents decide."""
     scenarios, errors = read_each(paths, None)
     lines = [line for error in errors for line in error.lines]
-    for rest in (error.rest for error in errors if error.rest):
-        lines += mistakes(rest.path, rest.variants)
-    for scenario in scenarios:
-        lines += [*mistakes(scenario.path, scenario.variants)] or _rehearsed(scenario)
+    for scenario in [*(error.rest for error in errors if error.rest), *scenarios]:
+        lines += mistakes(scenario.path, scenario.variants)
+        lines += _rehearsed(scenario, blamed=bool(lines))
     if lines:
         raise ScenarioError(lines)
     return scenarios
 
 
-def _rehearsed(scenario: Scenario) -> list[str]:
-    """What is wrong with the decision of each user's agent, in lines."""
+def _rehearsed(scenario: Scenario, *, blamed: bool) -> list[str]:
+    """What is wrong with the decision of each user's agent, in lines; why none could be taken, unless that is known."""
     if not guests(scenario):
         return []
     from fogbench.bench.playing.rehearsal import rehearsed  # noqa: PLC0415  it starts processes, and is slow
@@ -56,7 +55,7 @@ def _rehearsed(scenario: Scenario) -> list[str]:
     try:
         return rehearsed(scenario)
     except Mistake as mistake:
-        return str(mistake).splitlines()
+        return [] if blamed else str(mistake).splitlines()
 
 
 def notes(variant: Variant) -> Sequence[str]:

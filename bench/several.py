@@ -40,12 +40,12 @@ def read_each(paths: Sequence[Path], episodes: int | None) -> tuple[list[Scenari
             scenario = read_scenario(text_of(path), path)
         except ScenarioError as error:
             sort = other_sort(path)
-            lead = [f"{path}: seems to be {sort}; expected a scenario."] if sort else []
-            errors.append(ScenarioError([*lead, *error.lines], error.rest))
+            other = ScenarioError([f"{path}: seems to be {sort}; expected a scenario."])
+            errors.append(other if sort else error)
             continue
         twin = scenarios.setdefault(scenario.name, scenario)
         if twin is not scenario:
-            told = f"got the name {scenario.name}, as in {twin.path}; expected a name of its own"
+            told = f"the name {scenario.name} is that of {twin.path}; choose another"
             errors.append(ScenarioError([f"{path}: {told}."], scenario))
     return [_with_episodes(each, episodes) if episodes else each for each in scenarios.values()], errors
 

@@ -24,12 +24,17 @@ def find(names: list[str] | None) -> list[Path]:
         names: files, folders (all scenarios below), or stems of shipped files; None or empty: all that are shipped.
 
     Raises:
-        Mistake: a name that stands for nothing; the nearest shipped one is told.
+        Mistake: all the names that stand for nothing, each with the nearest.
     """
-    found: dict[Path, Path] = {}
+    found, lines = dict[Path, Path](), list[str]()
     for name in names or [str(folder())]:
-        for path in _find_one(name):
-            found.setdefault(path.resolve(), Path(encodable(str(path))))
+        try:
+            for path in _find_one(name):
+                found.setdefault(path.resolve(), Path(encodable(str(path))))
+        except Mistake as mistake:
+            lines.append(str(mistake))
+    if lines:
+        raise Mistake("\n".join(lines))
     return list(found.values())
 
 

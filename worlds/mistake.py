@@ -51,8 +51,9 @@ def counted(count: int, noun: str) -> str:
 
 
 def near(name: str, names: Iterable[str]) -> str:
-    """The name that is most like the given one; empty if none is."""
-    return next(iter(get_close_matches(name, names, n=1)), "")
+    """The name that is most like the given one, in upper or lower case; empty if none is."""
+    folded = {each.casefold(): each for each in names}
+    return next((folded[each] for each in get_close_matches(name.casefold(), folded, n=1)), "")
 
 
 def one_of(names: Iterable[str]) -> str:
@@ -65,7 +66,7 @@ def meant(name: str) -> str:
     return f" Did you mean {shown(name)}?" if name else ""
 
 
-def unknown(place: str, got: str, names: Iterable[str]) -> Mistake:
-    """Something got none of the names that it could have."""
+def unknown(place: str, got: str, names: Iterable[str], also: Iterable[str] = ()) -> Mistake:
+    """Something got none of the names that it could have; it may have meant one of those `also`."""
     names = list(names)
-    return Mistake(f"{place}: got {got}; expected {one_of(names)}.{meant(near(got, names))}")
+    return Mistake(f"{place}: got {got}; expected {one_of(names)}.{meant(near(got, [*names, *also]))}")

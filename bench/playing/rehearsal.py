@@ -15,17 +15,24 @@ def rehearsed(scenario: Scenario) -> list[str]:
     Raises:
         RunError: a world cannot be made, or a process cannot begin.
     """
-    asked, lines = guests(scenario), dict[str, str]()
+    asked, lines, unasked = guests(scenario), dict[str, str](), list[str]()
     with worker_pool(scenario, min(cpus(), len(asked))) as pool:
-        wrong = dict(_answers(pool, list(asked.values())))
+        wrong = dict(_answers(pool, list(asked.values()), unasked))
     for pair, (variant, entry) in asked.items():
         if wrong.get(pair):
             lines.setdefault(entry.label, _line(scenario, variant, entry, wrong[pair]))
+    if unasked and not lines:
+        raise RunError(unasked[0])
     return list(lines.values())
 
 
-def _answers(pool: Pool, left: list[tuple[Variant, Entry]]) -> Iterator[tuple[tuple[str, str], str]]:
-    """What each did wrong, by variant and label; one that failed in a variant is not asked in the next."""
+def _answers(
+    pool: Pool, left: list[tuple[Variant, Entry]], unasked: list[str]
+) -> Iterator[tuple[tuple[str, str], str]]:
+    """What each did wrong, by variant and label; one that failed in a variant is not asked in the next.
+
+    Why one could not be asked is added to `unasked`.
+    """
     failed = set[str]()
     left.reverse()
     while True:
@@ -38,7 +45,8 @@ def _answers(pool: Pool, left: list[tuple[Variant, Entry]]) -> Iterator[tuple[tu
             return
         for task, answer in pool.answers():
             if isinstance(answer, str):
-                raise RunError(answer)
+                unasked.append(answer)
+                continue
             wrong = answer.detail if isinstance(answer, Lost) else answer.wrong
             failed |= {task.arguments[1]} if wrong else set()
             yield task.arguments[:2], wrong

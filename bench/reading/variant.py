@@ -89,7 +89,7 @@ class VariantReading(Reading[Page]):
         return label, replace(block, content=fields) if block.fields() else block
 
     def _check_reference(self, said: Value | None) -> None:
-        if said is None or not isinstance(said.content, str) or said.unset:
+        if said is None or not isinstance(said.content, str) or said.unset or not self.lines:
             return
         if said.content not in self.meant | self.lines.keys():
             self.faults.append(said.wrong(one_of(self.lines), near(said.content, self.lines)))

@@ -70,6 +70,35 @@ def test_mistakes_of_the_file_do_not_hide_those_of_its_worlds(mistakes: Callable
     ]
 
 
+ODD_AGENT = """
+from typing import ClassVar
+from fogbench import Settings
+
+class Odd(Settings):
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+
+    def start(self, task, rng):
+        return object()
+
+    def parameter_bytes(self):
+        return 0
+"""
+
+
+@pytest.mark.parametrize(("word", "wrong"), [("astar", "astra"), ("[1, 3]", "[500, 600]")])
+def test_agents_that_cannot_decide_are_told_beside_all_other_mistakes(
+    mistakes: Callable[..., list[str]], word: str, wrong: str
+) -> None:
+    """Of the page, and of its worlds."""
+    Path("odd.py").write_text(ODD_AGENT)
+    page = "name: mine\nmaps: {maze: {size: 9}}\nbudget: {steps: 40}\nepisodes: 1\n"
+    page += "variants: {far: {tasks: {distance: [1, 3]}}, near: {tasks: {distance: [1, 2]}}}\n"
+    Path("mine.yaml").write_text(f"{page}agents: [astar, './odd.py:Odd']\n".replace(word, wrong))
+    lines = mistakes("mine.yaml")
+    assert any(line.startswith("mine.yaml:6:") and "an agent that can decide" in line for line in lines)
+    assert len(lines) == 2
+
+
 def test_more_episodes_than_tasks_are_told(mistakes: Callable[..., list[str]]) -> None:
     """With how many there are."""
     Path("lorr.map").write_text(MAP.format("...."))
@@ -108,11 +137,10 @@ def test_what_is_plainly_no_scenario_is_passed_over(
 
 
 def test_a_named_file_that_is_no_scenario_is_told_as_what_it_is(mistakes: Callable[..., list[str]]) -> None:
-    """Before its mistakes as a scenario."""
+    """In place of its mistakes as a scenario."""
     Path("map.yaml").write_text(ROS)
-    first, *others = mistakes("map.yaml")
-    assert first.startswith("map.yaml: seems to be a map of map_server, ")
-    assert "map.yaml:1:1  name: missing; give text." in others
+    (line,) = mistakes("map.yaml")
+    assert line.startswith("map.yaml: seems to be a map of map_server, ")
 
 
 def test_two_scenarios_of_one_name_are_told(mistakes: Callable[..., list[str]]) -> None:
@@ -120,6 +148,4 @@ def test_two_scenarios_of_one_name_are_told(mistakes: Callable[..., list[str]]) 
     del mistakes
     Path("again.yaml").write_text(SCENARIO)
     _, errors = read_each([Path("many.yaml"), Path("again.yaml")], None)
-    assert [str(error) for error in errors] == [
-        "again.yaml: got the name many, as in many.yaml; expected a name of its own."
-    ]
+    assert [str(error) for error in errors] == ["again.yaml: the name many is that of many.yaml; choose another."]

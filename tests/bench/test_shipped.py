@@ -43,6 +43,15 @@ def test_a_name_of_nothing_is_told_with_the_nearest(name: str, near: str) -> Non
     )
 
 
+def test_all_names_of_nothing_are_told_at_once() -> None:
+    """A line for each, in whatever case the nearest is written."""
+    with pytest.raises(Mistake) as error:
+        find(["GIRD", "grid", "mzae"])
+    first, second = str(error.value).splitlines()
+    assert first.startswith("GIRD: no such file. Did you mean grid?")
+    assert second.startswith("mzae: no such file. Did you mean maze?")
+
+
 def meaning(text: str) -> dict[str, Any]:
     """What a recipe says; the settings of imitation stood beside its other keys once."""
     said: dict[str, Any] = yaml.safe_load(text)

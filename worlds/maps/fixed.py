@@ -44,19 +44,31 @@ def fixed(
     inside = all(0 <= n < side for cell in (start, goal) for n, side in zip(cell, blocked.shape, strict=True))
     world = conditions.world(Layout(blocked), start, goal) if inside else None
     if world is None:
-        raise MapError(f"{map_}: {misfit(blocked, start, goal, conditions, ends)}")
+        told = misplaced(blocked, start, goal, ends) or [unreached(blocked, start, goal, conditions, ends[1])]
+        raise MapError("\n".join(f"{map_}: {line}" for line in told))
     return world
 
 
-def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions, ends: tuple[str, str] = ENDS) -> str:
+def misfit(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions) -> str:
     """Why a task does not fit its map [H, W] or the conditions, in words for an error."""
-    height, width = blocked.shape
+    return next(iter(misplaced(blocked, start, goal)), "") or unreached(blocked, start, goal, conditions)
+
+
+def misplaced(blocked: Array, start: Cell, goal: Cell, ends: tuple[str, str] = ENDS) -> list[str]:
+    """Which ends of a task are outside of its map [H, W] or on an obstacle."""
+    (height, width), lines = blocked.shape, list[str]()
     for name, (row, column) in zip(ends, (start, goal), strict=True):
-        place = f"{name} [{row}, {column}]"
+        place, rows = f"{name} [{row}, {column}]", f"a row below {height} and a column below {width}"
         if not (0 <= row < height and 0 <= column < width):
-            return f"{place}: got a cell outside of the map; expected a row below {height} and a column below {width}"
-        if not passable(blocked, row, column):
-            return f"{place}: got an obstacle; expected a free cell"
+            lines.append(f"{place}: got a cell outside of the map; expected {rows}")
+        elif not passable(blocked, row, column):
+            lines.append(f"{place}: got an obstacle; expected a free cell")
+    return lines
+
+
+def unreached(blocked: Array, start: Cell, goal: Cell, conditions: CellConditions, end: str = "goal") -> str:
+    """Why a task does not fit whose ends are free cells of its map."""
+    place = f"{end} {list(goal)}"
     if start == goal:
         return f"{place}: got the cell of the start; expected another one"
     cells = int(distances(np.asarray(blocked), start, goal)[goal])

@@ -120,6 +120,18 @@ def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
     assert str(error.value) == f"{tmp_path}/x.map.scen: no such file; {expected}"
 
 
+def test_both_ends_of_a_fixed_task_are_told(tmp_path: Path) -> None:
+    """A line for each."""
+    family(tmp_path)
+    with pytest.raises(MapError) as error:
+        MovingAI(map=tmp_path / "x.map", start=(9, 0), goal=(0, 99)).sample(RNG, 0, conditions(1, 100))
+    expected = "got a cell outside of the map; expected a row below 2 and a column below 30"
+    assert str(error.value).splitlines() == [
+        f"{tmp_path}/x.map: start [9, 0]: {expected}",
+        f"{tmp_path}/x.map: goal [0, 99]: {expected}",
+    ]
+
+
 def test_a_list_that_is_used_up_is_told_as_such(tmp_path: Path) -> None:
     """Where all tasks fit and more are wanted, no task is blamed."""
     maps = family(tmp_path)
