@@ -87,9 +87,9 @@ def run(
 
     Exit code 0: done. 1: finished, but an agent crashed or hung. 2: the command or a file was wrong.
     """
-    from fogbench.bench.session import run_all
-
     try:
+        from fogbench.bench.session import run_all
+
         crashed = run_all(_scenarios(scenarios), episodes, workers, results)
     except KeyboardInterrupt:
         typer.echo("Stopped. What was played is recorded; run the same command again to resume.", err=True)

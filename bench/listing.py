@@ -22,7 +22,8 @@ def show() -> None:
     console.print(_classes("Ways to learn", LEARNER.targets()))
     console.print(_pages("Recipes", recipes()))
     console.print(_checkpoints())
-    console.print(Text("`fogbench list NAME` shows the settings of a name; so do sensor, budget, scenario and recipe."))
+    others = "sensor, rules, tasks, budget, scenario and recipe"
+    console.print(Text(f"`fogbench list NAME` shows the settings of a name; so do {others}."))
 
 
 def _pages(title: str, paths: Mapping[str, Path]) -> Table:
@@ -41,7 +42,7 @@ def _checkpoints() -> Table:
 
 
 def _classes(title: str, targets: dict[str, str]) -> Table:
-    table = Table("name", "about", "class", title=title)
+    table = Table("name", "about", title=title)
     for name, target in targets.items():
-        table.add_row(*map(Text, (name, first_sentence(target), target)))
+        table.add_row(*map(Text, (name, first_sentence(target))))
     return table

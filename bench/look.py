@@ -25,7 +25,7 @@ from fogbench.bench.reporting.plain import plain, stems
 from fogbench.bench.reporting.spaces import Decisions, embedded, spaces
 from fogbench.bench.reporting.tables import markdown
 from fogbench.planners import judge_of
-from fogbench.worlds.mistake import Mistake, meant, near
+from fogbench.worlds.mistake import Mistake, counted, meant, near
 from fogbench.worlds.types import Marked
 
 if TYPE_CHECKING:
@@ -124,7 +124,9 @@ def _spaces(variant: Variant, entry: Entry, rows: pd.DataFrame, out: Path) -> st
     if teacher is None:
         return f"No t-SNE of {plain(variant.name)}: no judge says what is right in worlds of kind {variant.kind}."
     decisions = _decisions(variant, entry, rows, teacher)
-    told = f"{len(decisions.moves)} decisions with one optimal move, in {len(set(decisions.episodes))} episodes"
+    told = (
+        f"{len(decisions.moves)} decisions with one optimal move, in {counted(len(set(decisions.episodes)), 'episode')}"
+    )
     if len(decisions.moves) < LEAST or len(set(decisions.episodes)) < 2:
         return f"No t-SNE of {told}; expected {LEAST} or more, in two or more: `fogbench run --episodes` records them."
     separable = decisions.separable()

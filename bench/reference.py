@@ -1,6 +1,7 @@
 """The settings that a name takes: keys, values, defaults and what each means, from the settings class itself."""
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -45,10 +46,12 @@ def show_settings(name: str) -> None:
     """
     console = Console()
     for settings in _named(name):
-        table = Table("key", "value", "about", title=Text(name), caption=Text(_first(settings.__doc__)))
-        for row in rows(shape(settings)):
+        title = f"{name} ({settings.__module__}:{settings.__qualname__})"
+        table = Table("key", "value", "about", title=Text(title), caption=Text(_first(settings.__doc__)))
+        for row in (*rows(shape(settings)), *(_of_blocks() if settings in PAGES.values() else ())):
             table.add_row(*map(Text, row))
-        console.print(table if table.row_count else Text(f"{name} has no settings. {_first(settings.__doc__)}"))
+        told = f"{name} has no settings. {_first(settings.__doc__)}".strip()
+        console.print(table if table.row_count else Text(told))
 
 
 def rows(shape: Shape, above: str = "") -> Iterator[Row]:
@@ -59,6 +62,12 @@ def rows(shape: Shape, above: str = "") -> Iterator[Row]:
             needed = "required" if key in option.get("required", ()) else _default(schema.get("default", {}))
             yield Row(f"{above}{key}", f"{inner.words()}\n{needed}".strip(), _about(schema, inner))
             yield from rows(inner, f"{above}{key}.")
+
+
+def _of_blocks() -> Iterator[Row]:
+    """The blocks that a whole file has beside its own keys."""
+    for name, block in dict(_blocks()).items():
+        yield Row(name, f"a mapping\nsee `fogbench list {name}`", _first(block.__doc__))
 
 
 def _default(value: Any) -> str:
@@ -103,15 +112,23 @@ def _named(name: str) -> list[type[Settings]]:
             *PAGES,
             *dict.fromkeys(own for own, _ in blocks),
         ]
-        raise _file_of(name) or unknown("list", name, names)
+        raise _file_of(name) or unknown("list", name, names, also=_files())
     return found
 
 
 def _file_of(name: str) -> Mistake | None:
     """That a name is that of a shipped file, if it is: what it says stands there."""
-    shipped = {path.stem: path for path in find(None)}
-    paths = [str(files[name]) for files in (shipped, recipes(), checkpoints()) if name in files]
+    paths = _files().get(name, ())
     return Mistake(f"{name}: the name of a file, which has no settings; read {' or '.join(paths)}.") if paths else None
+
+
+def _files() -> dict[str, list[str]]:
+    """The shipped files by their names, which some share."""
+    found = defaultdict[str, list[str]](list)
+    for files in ({path.stem: path for path in find(None)}, recipes(), checkpoints()):
+        for name, path in files.items():
+            found[name].append(str(path))
+    return found
 
 
 def _blocks() -> list[tuple[str, type[Settings]]]:

@@ -127,7 +127,7 @@ def _run(scenario: Scenario, workers: int, results: Path, console: Console) -> b
 
 def _counts(played: Summary) -> str:
     ended = ", ".join(f"{count} {outcome.name}" for outcome, count in played.outcomes.most_common())
-    return f"{played.kept} episodes were recorded before, {played.outcomes.total()} were played now. {ended}"
+    return f"{played.kept} episodes were recorded before, {played.outcomes.total()} were played now. {ended}".strip()
 
 
 def _report(scenario: Scenario, folder: Path, console: Console, versions: Versions | None) -> bool:

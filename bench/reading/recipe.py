@@ -49,9 +49,9 @@ class RecipePage(Settings):
     validation: Validation = Validation()
     """How the network is tried while it learns."""
     variants: Annotated[dict[str, dict[str, Any] | None], Field(default_factory=dict)]
-    """Where the network is tried while it learns: name to what differs from the rest; by default the rest itself."""
+    """Where the network is tried while it learns: named changes to the recipe's worlds; by default those worlds."""
     lessons: Annotated[list[str], Field(default_factory=list)]
-    """Variants on which it learns, by turns; by default it learns on the rest itself."""
+    """Variants on which it learns, by turns; by default the recipe's own worlds."""
     seed: Seed = 0
     """Fixes the first weights, the maps to learn on and all luck; the maps it is tried on are the same for all."""
 

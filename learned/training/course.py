@@ -20,7 +20,7 @@ from fogbench.learned import checkpoint
 from fogbench.learned.training.recipe import Recipe, differences
 from fogbench.learned.training.trials import refuse_unplayable, validate
 from fogbench.worlds.files import write
-from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.mistake import Mistake, counted
 from fogbench.worlds.streams import digest
 
 SAVED_EVERY = 120.0
@@ -155,11 +155,14 @@ class Course:
         threads, before = torch.get_num_threads(), state["threads"]
         if state["recipe"] != digest(self.recipe.words()):
             told = differences(state["settings"], self.recipe.settings()) or "a file that it names has other contents"
-            start = f"To start from its weights, name {self.weights} as the `checkpoint` of the recipe's network."
+            weights = next(self.folder.glob(f"*{checkpoint.SUFFIX}"), self.weights)  # another seed has another name
+            start = f"To start from its weights, name {weights} as the `checkpoint` of the recipe's network."
             raise Mistake(f"{self.folder}: This folder holds a training with other settings ({told}); {other}. {start}")
         if threads != before:
             way = f"set OMP_NUM_THREADS={before}, or {other}"
-            raise Mistake(f"{self.folder}: This folder holds a training on {before} threads, now {threads}; {way}.")
+            raise Mistake(
+                f"{self.folder}: This folder holds a training on {counted(before, 'thread')}, now {threads}; {way}."
+            )
         if state["best"] and not self.weights.exists():
             raise Mistake(f"{self.weights}: missing; this file has the best weights so far. Restore it, or {other}.")
 

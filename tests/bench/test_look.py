@@ -99,7 +99,7 @@ def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_p
         recorder.append(play(tunnels, short, short.agents[3], 0, 1))
     _, spaces = look_inside(tunnels, None, "vin", 0, tmp_path / "few").splitlines()
     assert spaces.endswith(
-        " decisions with one optimal move, in 1 episodes; expected 10 or more, in two or more: "
+        " decisions with one optimal move, in 1 episode; expected 10 or more, in two or more: "
         "`fogbench run --episodes` records them."
     )
 

@@ -86,6 +86,7 @@ def test_a_folder_of_another_training_is_refused(train: Fogbench) -> None:
         "mine: This folder holds a training with other settings (learning.batches 1, now 4); choose another with "
         "--out. To start from its weights, name mine/small.safetensors as the `checkpoint` of the recipe's network.\n"
     )
+    assert "name mine/small.safetensors as" in train("small.yaml", "--out", "mine", "--seed", "4")[2]
 
 
 def test_mistakes_are_lines(train: Fogbench) -> None:
