@@ -18,6 +18,7 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 from fogbench.bench.playing.guardian import Guardian, end_group
+from fogbench.bench.playing.relay import Prints, relayed
 from fogbench.bench.playing.worker import serve
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.mistake import Mistake
@@ -115,9 +116,9 @@ class Worker:
 class Pool:
     """Workers that know a scenario."""
 
-    def __init__(self, scenario: Scenario, count: int) -> None:
-        """A pool that is to have so many; none of them runs yet."""
-        self.arguments, self.count = (scenario.text, scenario.path, count), count
+    def __init__(self, scenario: Scenario, count: int, prints: Prints) -> None:
+        """A pool that is to have so many, which print there; none of them runs yet."""
+        self.arguments, self.count = (prints, scenario.text, scenario.path, count), count
         self.guardian = Guardian()
         self.workers: list[Worker] = []
         self.last = monotonic()
@@ -167,7 +168,7 @@ class Pool:
         self._end(worker)
         if not worker.ready:
             told = f"a worker process that {_death(code)}" if code is not None else "a worker process that hangs"
-            raise RunError(f"{self.arguments[1]}: got {told} as it reads the scenario; expected one that can play.")
+            raise RunError(f"{self.arguments[2]}: got {told} as it reads the scenario; expected one that can play.")
         fresh = self.workers[self.workers.index(worker)] = self._start()
         if worker.tasks:
             task = worker.tasks.popleft()
@@ -212,8 +213,8 @@ def cpus() -> int:
 @contextmanager
 def worker_pool(scenario: Scenario, workers: int) -> Iterator[Pool]:
     """A pool whose processes know the scenario; at the end nothing is left of it."""
-    with _environment(VARIABLES):
-        pool = Pool(scenario, workers)
+    with _environment(VARIABLES), relayed() as prints:
+        pool = Pool(scenario, workers, prints)
         try:
             pool.begin()
             yield pool

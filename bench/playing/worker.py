@@ -1,10 +1,8 @@
 """A worker process: it reads the scenario itself and answers one task after the other."""
 
 import faulthandler
-import io
 import os
 import signal
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar
@@ -20,6 +18,7 @@ from fogbench.bench.playing import play as playing
 from fogbench.bench.playing.episode import Played
 from fogbench.bench.playing.keys import keys
 from fogbench.bench.playing.loop import ClerkError
+from fogbench.bench.playing.relay import Prints, print_there
 from fogbench.bench.playing.sources import edited
 from fogbench.bench.reading.scenario import Scenario, ScenarioError, Variant, read_scenario
 from fogbench.bench.reading.variant import Entry
@@ -32,19 +31,25 @@ _TOLD: ContextVar[tuple[str, Path, int]] = ContextVar("_TOLD")
 
 
 def serve(
-    pipe: "Connection[Any, Any]", last_words: "Connection[Any, Any]", text: str, path: Path, workers: int
+    pipe: "Connection[Any, Any]",
+    last_words: "Connection[Any, Any]",
+    prints: Prints,
+    text: str,
+    path: Path,
+    workers: int,
 ) -> None:
     """Answer tasks, each a function of this file and its arguments, until this process is ended.
 
     Args:
         pipe: where tasks come from and answers go to; the first answer says that this process is ready.
         last_words: where it is told what a fault of native code was in the middle of.
+        prints: where everything is printed.
         text: the scenario's YAML.
         path: where it came from.
         workers: how many processes run side by side.
     """
     _stand_alone()
-    _print_heedlessly()
+    print_there(prints)
     faulthandler.enable(last_words.fileno(), all_threads=False)
     _TOLD.set((text, path, workers))
     threadpool_limits(1)
@@ -59,25 +64,6 @@ def serve(
             if os.getpid() != own:  # a planner has split the process, and its twin comes along
                 os._exit(0)
             pipe.send(answer)
-
-
-class _Heedless(io.FileIO):
-    """A file that may be full, or that nobody reads any more: what cannot be written goes nowhere."""
-
-    def write(self, data: Any) -> int:
-        """Write it, or pretend to."""
-        try:
-            return super().write(data)
-        except OSError:
-            return len(data)
-
-
-def _print_heedlessly() -> None:
-    """Let no print of an agent fail: what becomes of it is no merit or fault of the agent."""
-    for number, name in ((1, "stdout"), (2, "stderr")):
-        place: int | str = number if getattr(sys, name) else os.devnull
-        raw = io.BufferedWriter(_Heedless(place, "w", closefd=False) if place == number else _Heedless(place, "w"))
-        setattr(sys, name, io.TextIOWrapper(raw, "utf-8", "backslashreplace", line_buffering=True))
 
 
 def _stand_alone() -> None:

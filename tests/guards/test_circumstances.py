@@ -21,7 +21,7 @@ time.time = lambda: truth() + (float(os.environ["JUMP"]) if monotonic() - began 
 """
 """A `sitecustomize` in which the system's clock takes a step."""
 
-SLOW = "import time; time.sleep(0.05); print('\u2192')\nwith open(LOG, 'a') as log: log.write('x')"
+SLOW = "import time; time.sleep(0.05); print('\u2192'); os.write(1, b'.')\nwith open(LOG, 'a') as log: log.write('x')"
 TOP = "import os, random, numpy\nLOG = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'log')"
 LUCKY = "return random.choice(free) if numpy.random.random() < 0.2 else min(free, key=near)"
 
