@@ -74,9 +74,13 @@ def _network(variant: Variant, label: str) -> Entry:
     networks = [name for name, entry in agents.items() if all(hasattr(entry.settings, own) for own in NETWORK.members)]
     if label in networks:
         return agents[label]
-    expected = f"one of the networks {', '.join(networks)}" if networks else "a network, and there is none that plays"
+    expected = (
+        f"one of the networks {', '.join(networks)}"
+        if networks
+        else "a class derived from Policy, as docs/extending.md tells; none plays here"
+    )
     if label in agents:
-        why = f"is skipped ({agents[label].skipped})" if agents[label].skipped else "is no network"
+        why = f"is skipped ({agents[label].skipped})" if agents[label].skipped else "is not a network of fogbench"
         raise Mistake(f"--agent: got {label}, which {why}; expected {expected}.")
     raise Mistake(f"--agent: got {label}; expected {expected}.{meant(near(label, networks))}")
 

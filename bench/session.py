@@ -34,8 +34,8 @@ EACH = 16
 """Workers of a CPU at most: each takes some hundred megabytes."""
 
 OUTDATED = (
-    "{folder}: none of {count} recorded episodes counts any more: settings, sources or packages have changed. The "
-    "tables stay as they are; `fogbench run` plays the episodes again."
+    "{folder}: none of {count} recorded episodes counts any more: settings, files, sources or packages have changed. "
+    "The tables stay as they are; `fogbench run` plays the episodes again."
 )
 """What a user is told in place of a report without a number."""
 
@@ -89,7 +89,9 @@ def compare_all(paths: Sequence[Path], label: str, results: Path) -> None:
         frame = store.read(folder, scenario, READS, versions_of(folder))
         lines = comparisons(summary(frame, scenario), scenario)
         if not lines.rows:
-            told = f"no episodes of {label} are recorded beside those of another agent; use `fogbench run` first"
+            unlike = f"no episodes of {label} are recorded beside those of another agent; use `fogbench run` first"
+            hung = f"{label} hung in its first episodes, so it cannot be compared; mend it, or raise `hard_seconds`"
+            told = hung if set(frame.loc[frame["agent"] == label, "outcome"]) == {Outcome.HUNG.name} else unlike
             raise Mistake(f"{folder}: {told}.")
         print_table("Paired", lines, console)
         page = folder / f"against-{stems(labels)[label]}.md"

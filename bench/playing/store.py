@@ -33,8 +33,8 @@ LISTS = {kind: pd.ArrowDtype(kind) for kind in SCHEMA.types if pa.types.is_list(
 """Lists stay as they are stored: an object for each would take twice the memory."""
 
 STALE = (
-    "{count} recorded episodes of {agent} in variant {variant} do not count any more: its settings, sources or "
-    "packages have changed; `fogbench run` plays them again."
+    "{count} recorded episodes of {agent} in variant {variant} do not count any more: its settings, files, sources "
+    "or packages have changed; `fogbench run` plays them again."
 )
 """What a user is told of `stale` episodes."""
 

@@ -105,7 +105,7 @@ def read_scenario(text: str, path: Path) -> Scenario:
     published = next(iter(rows.values())).published
     unset = next((value.unset for value in page.below() if value.unset), "")
     left_out = {name: row.skipped for name, row in rows.items() if row.skipped}
-    whole_rows = {name: row for name, row in rows.items() if row.page and row.family and row.conditions and not unset}
+    whole_rows = {name: row for name, row in rows.items() if row.family and row.conditions and not unset}
     variants = tuple(_variant(name, row, _place(path, whole[name])) for name, row in whole_rows.items())
     missing = f"environment variable {unset} is not set" if unset else next(iter(left_out.values()), "")
     skipped = "" if variants else missing
@@ -128,9 +128,9 @@ def _place(path: Path, page: Value) -> str:
 
 def _variant(name: str, row: VariantReading, place: str) -> Variant:
     """A variant whose worlds can be made."""
-    assert row.page is not None
     assert row.family is not None
     page, labels = row.page, [entry.label for entry in row.agents]
-    reference, files = page.reference or next(iter(labels), ""), named_files(row.family, row.folder)
-    terms = page.episodes, page.seed, files, place
+    reference = page.reference if page and page.reference else next(iter(labels), "")
+    episodes, seed = (page.episodes, page.seed) if page else (1, 0)  # of a page with mistakes nothing is recorded
+    terms = episodes, seed, named_files(row.family, row.folder), place
     return Variant(name, row.kind, row.family, row.conditions, row.agents, reference, *terms)

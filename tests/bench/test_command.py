@@ -124,8 +124,8 @@ def test_tables_of_outdated_results_stay(fogbench: Fogbench) -> None:
     code, out, err = fogbench("report", "small.yaml")
     assert (code, err, page.read_bytes()) == (0, "", before)
     assert out.splitlines()[-1] == (
-        "results/small: none of 2 recorded episodes counts any more: settings, sources or packages have changed. "
-        "The tables stay as they are; `fogbench run` plays the episodes again."
+        "results/small: none of 2 recorded episodes counts any more: settings, files, sources or packages have "
+        "changed. The tables stay as they are; `fogbench run` plays the episodes again."
     )
 
 
@@ -229,7 +229,8 @@ def test_a_replay_verifies_and_draws(fogbench: Fogbench) -> None:
     code, _, err = fogbench("replay", "small.yaml", "--agent", "asta")
     assert (code, err) == (2, "--agent: got asta; expected one of astar. Did you mean astar?\n")
     code, _, err = fogbench("look", "small.yaml", "--agent", "astar")
-    nobody = "--agent: got astar, which is no network; expected a network, and there is none that plays.\n"
+    nobody = "--agent: got astar, which is not a network of fogbench; expected a class derived from Policy, as "
+    nobody += "docs/extending.md tells; none plays here.\n"
     assert (code, err) == (2, nobody)
 
 

@@ -107,7 +107,7 @@ def test_what_cannot_be_drawn_is_told(tunnels: Scenario, played: Scenario, tmp_p
 @pytest.mark.parametrize(
     ("agent", "why", "meant"),
     [
-        ("astar", ", which is no network", ""),
+        ("astar", ", which is not a network of fogbench", ""),
         ("absent", ", which is skipped (needs the package x, which is not installed)", ""),
         ("mcan", "", " Did you mean macn?"),
         ("x", "", ""),
@@ -126,7 +126,8 @@ def test_a_scenario_without_networks(make: Callable[..., Scenario], tmp_path: Pa
     with pytest.raises(Mistake) as caught:
         look_inside(make(), "short", "astar", 0, tmp_path)
     assert str(caught.value) == (
-        "--agent: got astar, which is no network; expected a network, and there is none that plays."
+        "--agent: got astar, which is not a network of fogbench; expected a class derived from Policy, as "
+        "docs/extending.md tells; none plays here."
     )
 
 

@@ -81,8 +81,8 @@ def test_an_episode_of_other_sources_is_told(played: Scenario, tmp_path: Path) -
         replay_recorded(played, None, "astar", 2, tmp_path / "store", tmp_path / "x.png")
     assert str(caught.value) == (
         "--episode: got 2; expected one of the 2 of astar in variant short, from 0 to 1. 1 recorded episodes of "
-        "astar in variant short do not count any more: its settings, sources or packages have changed; `fogbench run` "
-        "plays them again."
+        "astar in variant short do not count any more: its settings, files, sources or packages have changed; "
+        "`fogbench run` plays them again."
     )
 
 

@@ -131,8 +131,9 @@ class TaskList:
             return f"{lacking}; set `episodes: {total}`, or give more tasks"
         first = min(self.unfit)
         why = misfit(self.layout.blocked, first.start, first.goal, self.conditions)
-        usable = f"only {fit} of {counted(total, 'task')} {'is' if fit == 1 else 'are'} usable"
-        return f"{usable}, for {counted(wanted, 'episode')}: line {first.line}: {why}"
+        tasks, are = counted(total, "task"), "is" if fit == 1 else "are"
+        usable = f"only {fit} of {tasks} {are} usable, for {wanted} episodes" if fit else f"none of {tasks} is usable"
+        return f"{usable}: line {first.line}: {why}"
 
 
 _task_list = lru_cache(maxsize=16)(TaskList)
