@@ -6,9 +6,10 @@ import numpy as np
 
 from fogbench.learned.dnc.access import EPSILON, AccessState
 from fogbench.learned.dnc.job import Sizes, head_size
-from fogbench.learned.kernels.instructions import at, full, put, until
+from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, zeros
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.sorting import gather, ordered, scatter
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -116,28 +117,28 @@ def raised(usage: Any) -> Any:
 
 @fused
 def precede(used: Array, before: Array) -> None:
-    """For each row the product of the usages of the rows less used, or as much and earlier; this needs no sorting."""
-    rows = len(used)
-    for n in range(rows):
-        u, product = at(used, n), full(used, 1)
-        for m in range(n):
-            product *= until(at(used, m), u, at(used, m), 1)
-        for m in range(n + 1, rows):
-            product *= until(u, at(used, m), 1, at(used, m))
-        put(before, n, product)
+    """For each row the product of the usages of the rows less used, or as much and earlier."""
+    factors, order = ordered(used)
+    product = full(used, 1)
+    for k in range(len(used)):
+        factor = at(factors, k)
+        put(factors, k, product)
+        product *= factor
+    scatter(factors, order, before)
 
 
 @fused
 def precede_back(used: Array, before: Array, d_free: Array, d_used: Array) -> None:
     """Back through (1 - used) * before: each usage is a factor for all rows after it; adds to `d_used`."""
-    rows = len(used)
-    shares = np.empty((rows, LANES), used.dtype)
-    for n in range(rows):
+    shares, (later, order) = zeros(used), ordered(used)
+    for n in range(len(used)):
         put(shares, n, at(d_free, n) * (1 - at(used, n)) * at(before, n))
-    for n in range(rows):
-        u, later = at(used, n), full(used, 0)
-        for m in range(n):
-            later += until(at(used, m), u, 0, at(shares, m))
-        for m in range(n + 1, rows):
-            later += until(u, at(used, m), at(shares, m), 0)
-        add(d_used, n, later / u - at(d_free, n) * at(before, n))
+    gather(shares, order, later)
+    total = full(used, 0)
+    for k in range(len(used) - 1, -1, -1):
+        share = at(later, k)
+        put(later, k, total)
+        total += share
+    scatter(later, order, shares)
+    for n in range(len(used)):
+        add(d_used, n, at(shares, n) / at(used, n) - at(d_free, n) * at(before, n))
