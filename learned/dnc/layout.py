@@ -17,6 +17,7 @@ from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import tape_sizes
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.room import room
 
 
 class Buffers(NamedTuple):
@@ -60,7 +61,7 @@ class Layout(NamedTuple):
 
     def empty(self, like: Tensor) -> Buffers:
         """Room for a state."""
-        return Buffers(like.new_empty(self.rest), like.new_empty(self.links))
+        return Buffers(like.new_empty(self.rest), room(like, self.links))
 
     def packed(self, parts: Iterable[Tensor], buffers: Buffers) -> Packed:
         """The state of which these are the parts and the buffers."""
