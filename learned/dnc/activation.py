@@ -11,9 +11,9 @@ from fogbench.worlds.types import Array
 @kernel
 def activate(sizes: Sizes, interface: Array, write_heads: Array, read_heads: Array) -> None:
     """Heads get their controls: strengths by softplus, gates and erase vectors by sigmoid, modes by softmax."""
-    word, _, readers, writers, _ = sizes
-    lay(interface[:, : len(write_heads)], write_heads)
-    lay(interface[:, len(write_heads) :], read_heads)
+    word, _, readers, writers, _, alone = sizes
+    lay(interface[:, : len(write_heads)], write_heads, alone)
+    lay(interface[:, len(write_heads) :], read_heads, alone)
     size = head_size(write_heads, writers)
     for i in range(writers):
         head = write_heads[i * size : (i + 1) * size]
@@ -25,7 +25,7 @@ def activate(sizes: Sizes, interface: Array, write_heads: Array, read_heads: Arr
         head = read_heads[j * size : (j + 1) * size]
         put(head, word, softplus(at(head, word)))
         put(head, word + 1, sigmoid(at(head, word + 1)))
-        softmax(head[word + 2 :])
+        softmax(head[word + 2 :], 0)
 
 
 @fused
@@ -33,7 +33,7 @@ def activate_back(
     sizes: Sizes, write_heads: Array, read_heads: Array, d_write_heads: Array, d_read_heads: Array, d_interface: Array
 ) -> None:
     """Back through `activate`."""
-    word, _, readers, writers, _ = sizes
+    word, _, readers, writers, _, alone = sizes
     size = head_size(write_heads, writers)
     for i in range(writers):
         head, d_head = write_heads[i * size : (i + 1) * size], d_write_heads[i * size : (i + 1) * size]
@@ -46,6 +46,6 @@ def activate_back(
         free = at(head, word + 1)
         put(d_head, word, at(d_head, word) * (1 - decay(at(head, word))))
         put(d_head, word + 1, at(d_head, word + 1) * free * (1 - free))
-        softmax_back(head[word + 2 :], d_head[word + 2 :])
-    unlay(d_write_heads, d_interface[:, : len(d_write_heads)])
-    unlay(d_read_heads, d_interface[:, len(d_write_heads) :])
+        softmax_back(head[word + 2 :], d_head[word + 2 :], 0)
+    unlay(d_write_heads, d_interface[:, : len(d_write_heads)], alone)
+    unlay(d_read_heads, d_interface[:, len(d_write_heads) :], alone)

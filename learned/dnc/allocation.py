@@ -10,14 +10,14 @@ from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, zeros
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.sorting import gather, ordered, scatter
-from fogbench.worlds.kernel import fused
+from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
 
 @fused
 def use(sizes: Sizes, read_heads: Array, old: AccessState[Array], usage: Array) -> None:
     """Rows written before are used, rows read before and freed are not."""
-    word, rows, readers, writers, _ = sizes
+    word, rows, readers, writers, _, _ = sizes
     size = head_size(read_heads, readers)
     for n in range(rows):
         unused = 1 - at(old.usage, n)
@@ -35,7 +35,7 @@ def use_back(
     d_old_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `use`, which takes past write weightings as given; adds to `d_before`."""
-    word, rows, readers, writers, _ = sizes
+    word, rows, readers, writers, _, _ = sizes
     size = head_size(heads, readers)
     for n in range(rows):
         unwritten = full(heads, 1)
@@ -58,13 +58,13 @@ def use_back(
 @fused
 def allocate(sizes: Sizes, heads: Array, usage: Array, similar: Array, before: Array, weights: Array) -> None:
     """The write weightings; a head sees as used what the heads before it are allocated."""
-    _, rows, _, writers, _ = sizes
+    _, rows, _, writers, _, alone = sizes
     size, used = head_size(heads, writers), np.empty((rows, LANES), usage.dtype)
     for n in range(rows):
         put(used, n, raised(at(usage, n)))
     for i in range(writers):
         allocation, gate = at(heads, (i + 1) * size - 2), at(heads, (i + 1) * size - 1)
-        precede(used, before[i * rows :])
+        precede(used, before[i * rows : (i + 1) * rows], alone)
         for n in range(rows):
             k, u = i * rows + n, at(used, n)
             free = (1 - u) * at(before, k)
@@ -78,7 +78,7 @@ def allocate_back(
     d_heads: Array, d_similar: Array, d_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `allocate`, from the last head to the first; adds to `d_usage`."""
-    _, rows, _, writers, _ = sizes
+    _, rows, _, writers, _, alone = sizes
     size, used, d_used = head_size(heads, writers), np.empty((writers * rows, LANES), usage.dtype), zeros(usage)
     d_free = np.empty((rows, LANES), usage.dtype)
     for n in range(rows):
@@ -104,7 +104,7 @@ def allocate_back(
             put(d_used, n, at(d_used, n) * (1 - allocation * gate * free))
         put(d_heads, head - 2, d_allocation + d_both * gate)
         put(d_heads, head - 1, d_gate + d_both * allocation)
-        precede_back(used[i * rows : (i + 1) * rows], before[i * rows :], d_free, d_used)
+        precede_back(used[i * rows : (i + 1) * rows], before[i * rows :], d_free, d_used, alone)
     for n in range(rows):
         add(d_usage, n, (1 - EPSILON) * at(d_used, n))
 
@@ -116,8 +116,11 @@ def raised(usage: Any) -> Any:
 
 
 @fused
-def precede(used: Array, before: Array) -> None:
+def precede(used: Array, before: Array, alone: int) -> None:
     """For each row the product of the usages of the rows less used, or as much and earlier."""
+    if alone:
+        precede_alone(used, before, alone)
+        return
     factors, order = ordered(used)
     product = full(used, 1)
     for k in range(len(used)):
@@ -127,12 +130,34 @@ def precede(used: Array, before: Array) -> None:
     scatter(factors, order, before)
 
 
+@kernel
+def precede_alone(used: Array, before: Array, rows: int) -> None:
+    """The same of one sample."""
+    factors, product = used.ravel()[:rows], used.dtype.type(1)
+    before[:] = 0
+    for k in np.argsort(factors, kind="mergesort"):
+        before[k // LANES, k % LANES] = product
+        product *= factors[k]
+
+
 @fused
-def precede_back(used: Array, before: Array, d_free: Array, d_used: Array) -> None:
+def precede_back(used: Array, before: Array, d_free: Array, d_used: Array, alone: int) -> None:
     """Back through (1 - used) * before: each usage is a factor for all rows after it; adds to `d_used`."""
-    shares, (later, order) = zeros(used), ordered(used)
+    shares = zeros(used)
     for n in range(len(used)):
         put(shares, n, at(d_free, n) * (1 - at(used, n)) * at(before, n))
+    if alone:
+        add_up_alone(shares, used, alone)
+    else:
+        add_up(shares, used)
+    for n in range(len(used)):
+        add(d_used, n, at(shares, n) / at(used, n) - at(d_free, n) * at(before, n))
+
+
+@fused
+def add_up(shares: Array, used: Array) -> None:
+    """For each row the sum of the shares of the rows more used, or as much and later."""
+    later, order = ordered(used)
     gather(shares, order, later)
     total = full(used, 0)
     for k in range(len(used) - 1, -1, -1):
@@ -140,5 +165,13 @@ def precede_back(used: Array, before: Array, d_free: Array, d_used: Array) -> No
         put(later, k, total)
         total += share
     scatter(later, order, shares)
-    for n in range(len(used)):
-        add(d_used, n, at(shares, n) / at(used, n) - at(d_free, n) * at(before, n))
+
+
+@kernel
+def add_up_alone(shares: Array, used: Array, rows: int) -> None:
+    """The same of one sample."""
+    total = shares.dtype.type(0)
+    for k in np.argsort(used.ravel()[:rows], kind="mergesort")[::-1]:
+        share = shares[k // LANES, k % LANES]
+        shares[k // LANES, k % LANES] = total
+        total += share

@@ -2,18 +2,22 @@
 
 from typing import Any
 
+import numpy as np
+
 from fogbench.learned.dnc.access import EPSILON
-from fogbench.learned.dnc.job import head_size
+from fogbench.learned.dnc.job import Sizes, head_size
 from fogbench.learned.kernels.instructions import at, full, put, root
 from fogbench.learned.kernels.lane_arrays import add, softmax, softmax_back
+from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
 
 @fused
-def address(word: int, count: int, heads: Array, memory: Array, lengths: Array, similar: Array) -> None:
+def address(sizes: Sizes, count: int, heads: Array, memory: Array, lengths: Array, similar: Array) -> None:
     """The weightings by cosine similarity of keys and rows, and the rows' lengths."""
-    rows, size = len(lengths), head_size(heads, count)
+    word, rows, _, _, _, alone = sizes
+    size = head_size(heads, count)
     for n in range(rows):
         put(lengths, n, length(memory[n:], word, rows))
     for i in range(count):
@@ -21,21 +25,24 @@ def address(word: int, count: int, heads: Array, memory: Array, lengths: Array, 
         own, strength = length(head, word, 1), at(head, word)
         for n in range(rows):
             put(scores, n, strength * product(head, memory[n:], word, rows) / (own * at(lengths, n) + EPSILON))
-        softmax(scores)
+        for k in range(alone, alone and rows * LANES):
+            scores[k // LANES, k % LANES] = -np.inf
+        softmax(scores, alone)
 
 
 @fused
 def address_back(
-    word: int, count: int, heads: Array, memory: Array, lengths: Array, similar: Array, d_similar: Array,
+    sizes: Sizes, count: int, heads: Array, memory: Array, lengths: Array, similar: Array, d_similar: Array,
     d_heads: Array, d_memory: Array,
 ) -> None:  # fmt: skip
     """Back through `address`; uses `d_similar` up, adds to `d_memory` and to the keys of `d_heads`."""
-    rows, size = len(lengths), head_size(heads, count)
+    word, rows, _, _, _, alone = sizes
+    size = head_size(heads, count)
     for i in range(count):
         head, d_head = heads[i * size : (i + 1) * size], d_heads[i * size : (i + 1) * size]
         own, strength = length(head, word, 1), at(head, word)
         d_scores, d_strength, d_own = d_similar[i * rows : (i + 1) * rows], full(heads, 0), full(heads, 0)
-        softmax_back(similar[i * rows : (i + 1) * rows], d_scores)
+        softmax_back(similar[i * rows : (i + 1) * rows], d_scores, alone)
         for n in range(rows):
             share = 1 / (own * at(lengths, n) + EPSILON)
             cosine = share * product(head, memory[n:], word, rows)

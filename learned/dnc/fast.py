@@ -45,6 +45,10 @@ def _step(lies: Layout, old: Buffers, interface: Tensor) -> tuple[Buffers, Tenso
     return new, reads, tape
 
 
+ARGUMENTS, LINKS = 4, AccessState._fields.index("links")
+"""Of a step before the state, and of the state before the links."""
+
+
 class _Step(Function):
     """One step of a batch. What the way back needs stays on `ctx`, the step's node in torch's graph."""
 
@@ -53,15 +57,18 @@ class _Step(Function):
         """The buffers of the state after, which are no part of the graph, the reads and the state after."""
         new, reads, tape = _step(lies, old, interface)
         ctx.layout, ctx.old, ctx.new, ctx.tape, ctx.interface = lies, old.rest, new.rest, tape, interface.shape
-        keep_links(ctx, old.links, state[4].grad_fn, every)
+        ctx.set_materialize_grads(False)
+        keep_links(ctx, old.links, state[LINKS].grad_fn, every)
         return new, reads, *lies.views(new)
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, _: None, d_reads: Tensor, *d_state: Tensor) -> tuple[Tensor | None, ...]:
+    def backward(ctx: Any, _: None, d_reads: Tensor | None, *d_state: Tensor | None) -> tuple[Tensor | None, ...]:
         """The gradients by the interface and the state before; zeros by past write weightings."""
-        lies, links, d_reads = ctx.layout, links_before(ctx), d_reads.contiguous()
-        d_new, d_old = lies.buffers(AccessState(*d_state)), lies.empty(d_reads)
+        lies, links = ctx.layout, links_before(ctx)
+        d_reads = ctx.tape.new_zeros(lies.reads) if d_reads is None else d_reads.contiguous()
+        d_new = lies.gradients(AccessState(*d_state), d_reads)
+        d_old = lies.empty(d_reads, links=ctx.needs_input_grad[ARGUMENTS + LINKS])
         d_interface = d_reads.new_empty(ctx.interface)
         tensors = None, ctx.old, links, ctx.new, None, None, ctx.tape, d_reads, *d_new, *d_old, d_interface
         BACKWARD.run(d_reads.dtype, lies.blocks, lies.sizes, tensors)
@@ -69,7 +76,7 @@ class _Step(Function):
         return None, None, None, d_interface, *lies.views(d_old)
 
 
-def keep_links(step: Any, links: Tensor, before: Any, every: int) -> None:
+def keep_links(step: Any, links: Tensor | None, before: Any, every: int) -> None:
     """Let a step keep the links before it, or the step before, if that came from here and not `every` steps passed."""
     follows = type(before) is type(step)
     step.age = (before.age + 1) % every if follows else 0

@@ -1,10 +1,12 @@
 """The jobs of the memory access, and a block of the arrays that their addresses stand for.
 
 A block is sixteen samples side by side. An array of a block is flat and has one row for each number of a sample; the
-letters are those of `fogbench.learned.dnc.access`.
+letters are those of `fogbench.learned.dnc.access`. Or a block is one sample `alone`, whose memory rows lie side by
+side, sixteen by sixteen, the last ones unused; then a number that belongs to no memory row is in all lanes, and the
+gradient by it is the sum of all.
 
 Words used here
-    sizes        D, N, R, W, K
+    sizes        D, N, R, W, K, and 0; or, of a sample that is alone, N counts sixteen rows as one, and the last is N
     write_heads  [W * (3 * D + 3)], for each write head key, strength, value, erase vector, allocation gate, write gate
     read_heads   [R * (D + 2 * K + 3)], for each read head key, strength, free gate, modes
     similar      [heads * N], weightings by content
@@ -24,7 +26,7 @@ from fogbench.learned.kernels.native import job, pointer
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 
-Sizes = tuple[int, int, int, int, int]
+Sizes = tuple[int, int, int, int, int, int]
 
 
 class Tape(NamedTuple, Generic[T]):
@@ -50,21 +52,21 @@ def tape_sizes(heads: Heads, rows: int) -> Tape[int]:
 
 ENDS = tuple(f"{part}_end" for part in (*AccessState._fields, *Tape._fields))
 """Where the parts of a state and of a tape end, each in its buffer, where it follows on the part before."""
-SIZES = "samples", "pitch", "interface_size", "word", "rows", "reads", "writes", "linked", *ENDS
+SIZES = "samples", "pitch", "interface_size", "word", "rows", "reads", "writes", "linked", "alone", *ENDS
 STATES = "old", "old_links", "new", "new_links"
 JOB = job(
     *SIZES, "interface", *STATES, "read", "tape",
     "d_read", "d_new", "d_new_links", "d_old", "d_old_links", "d_interface",
 )  # fmt: skip
-"""Sizes, then addresses: an interface [B, I]; states [rows, pitch] but for their links, and links [K * N * N, pitch],
-where the samples stand side by side, `pitch` numbers from row to row; what is read [B, R * D]; the tape [rows, pitch];
-and gradients by these."""
+"""Sizes, then addresses: an interface [B, I]; states but for their links, and links, as `fogbench.learned.dnc.layout`
+has them, `pitch` numbers from row to row; what is read [B, R * D]; the tape [rows, pitch]; and gradients by these, of
+which those by links may be nowhere."""
 
 
 @kernel
 def sizes_of(job: Any) -> Sizes:
     """The sizes in a job."""
-    return job.word, job.rows, job.reads, job.writes, job.linked
+    return job.word, job.rows, job.reads, job.writes, job.linked, job.alone
 
 
 @kernel
@@ -76,14 +78,16 @@ def head_size(heads: Array, count: int) -> int:
 @kernel
 def samples_of(number: Any, address: int, size: int, job: Any, block: int) -> Array:
     """[at most 16, size] the samples of a block of an array [B, size]."""
-    return carray(pointer(address), (job.samples, size), number)[block * LANES : (block + 1) * LANES]
+    most = 1 if job.alone else LANES
+    return carray(pointer(address), (job.samples, size), number)[block * most : (block + 1) * most]
 
 
 @kernel
 def block_of(number: Any, address: int, rows: int, job: Any, block: int) -> Array:
-    """[rows, 16] a block of an array [rows, pitch]."""
-    array = carray(pointer(address), (rows, job.pitch), number)
-    return array[:, block * LANES : (block + 1) * LANES]
+    """[rows, 16] a block of an array [rows, pitch], or of one sample [samples * rows, 16]; none of an array nowhere."""
+    first, lane = (block * rows, 0) if job.alone else (0, block * LANES)
+    array = carray(pointer(address), (first + rows, job.pitch), number)
+    return array[first if address else len(array) :, lane : lane + LANES]
 
 
 @kernel

@@ -1,174 +1,142 @@
 """The temporal links of a memory access: which row was written after which, and what is read along them; both ways.
 
-The links are far larger than all else. So the way back passes over them once: it links a row again, follows it, and
-leaves its gradient, all while that row is at hand. It takes two rows at a time, which share what they load.
+The links are far larger than all else. So each way passes over them once: it links a row, follows it, and leaves its
+gradient, all while that row is at hand. It takes two rows at a time, which share what they load. What is done with a
+row is the same whether sixteen samples lie side by side or the rows of one (`alone`); where a row begins is not.
 
 Words used here
     ahead, back   [R * N], the links, and the transposed links, times a vector of rows for each read head
     w, p          [N], what one write head wrote, and the precedence before
+    to            how much of a row was written: of sixteen samples, or a plain number
 """
 
 from typing import Any
 
-import numpy as np
-
 from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.job import Sizes, head_size
-from fogbench.learned.kernels.instructions import at, full, put
-from fogbench.learned.kernels.lane_arrays import add, clear, zeros
+from fogbench.learned.kernels.instructions import at, full, put, total
+from fogbench.learned.kernels.lane_arrays import add, clear, over, zeros
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
 
 @fused
-def link(linked: int, old: AccessState[Array], weights: Array, links: Array, precedence: Array) -> None:
-    """Rows written now follow the rows written last."""
-    rows = len(old.usage)
+def link(sizes: Sizes, heads: Array, old: AccessState[Array], new: AccessState[Array]) -> None:
+    """Rows written now follow the rows written last; add what is read along the links to the read weightings."""
+    word, rows, readers, _, linked, alone = sizes
+    size, pitch = head_size(heads, readers), link_rows(sizes)
+    ahead, back = zeros(old.read_weights), zeros(old.read_weights)
     for i in range(linked):
-        w, p = weights[i * rows : (i + 1) * rows], old.precedence[i * rows : (i + 1) * rows]
-        for n in range(rows):
-            first = (i * rows + n) * rows
-            link_row(old.links[first:], n, w, p, links[first:])
-        kept = unwritten(w)
-        for n in range(rows):
-            put(precedence, i * rows + n, kept * at(p, n) + at(w, n))
-
-
-@fused
-def link_row(links: Array, n: int, w: Array, p: Array, new_links: Array) -> None:
-    """The links of row `n`."""
-    to = at(w, n)
-    for m in range(len(w)):
-        put(new_links, m, (1 - to - at(w, m)) * at(links, m) + to * at(p, m))
-    put(new_links, n, full(links, 0))
-
-
-@fused
-def unwritten(w: Array) -> Any:
-    """How much was not written."""
-    kept = full(w, 1)
-    for n in range(len(w)):
-        kept -= at(w, n)
-    return kept
-
-
-@fused
-def follow(sizes: Sizes, heads: Array, links: Array, before: Array, weights: Array) -> None:
-    """Add what is read backward and forward along the links to the read weightings."""
-    word, rows, readers, _, linked = sizes
-    size = head_size(heads, readers)
-    ahead, back = np.empty((readers * rows, LANES), before.dtype), np.empty((readers * rows, LANES), before.dtype)
-    for i in range(linked):
+        w, p = new.write_weights[i * rows : (i + 1) * rows], old.precedence[i * rows :]
         clear(back)
-        for n in range(0, rows, 2):
-            along(rows, links[(i * rows + n) * rows :], n, before, ahead, back)
+        for n in range(0, pitch, 2):
+            first = (i * pitch + n) * rows
+            pair = new.links[first:]
+            if alone:
+                link_pair_alone(n, old.links[first:], w, p, pair)
+                follow_pair_alone(n, pair, old.read_weights, ahead, back, rows)
+            else:
+                link_pair(n, old.links[first:], w, p, pair)
+                follow_pair(n, pair, old.read_weights, ahead, back, rows)
+        kept = unwritten(w, alone)
+        for n in range(rows):
+            put(new.precedence, i * rows + n, kept * at(p, n) + at(w, n))
         for j in range(readers):
             mode = j * size + word + 2 + i
             backward, forward = at(heads, mode), at(heads, mode + linked)
             for n in range(j * rows, (j + 1) * rows):
-                add(weights, n, backward * at(back, n) + forward * at(ahead, n))
+                add(new.read_weights, n, backward * at(back, n) + forward * at(ahead, n))
 
 
 @fused
-def along(rows: int, pair: Array, n: int, vectors: Array, ahead: Array, back: Array) -> None:
+def link_again(sizes: Sizes, old: AccessState[Array], new: AccessState[Array]) -> None:
+    """The links of `new` alone."""
+    _, rows, _, _, linked, alone = sizes
+    pitch = link_rows(sizes)
+    for i in range(linked):
+        w, p = new.write_weights[i * rows : (i + 1) * rows], old.precedence[i * rows :]
+        for n in range(0, pitch, 2):
+            first = (i * pitch + n) * rows
+            if alone:
+                link_pair_alone(n, old.links[first:], w, p, new.links[first:])
+            else:
+                link_pair(n, old.links[first:], w, p, new.links[first:])
+
+
+@fused
+def link_rows(sizes: Sizes) -> int:
+    """How many rows of links a write head has."""
+    return sizes[1] * LANES if sizes[5] else sizes[1]
+
+
+@fused
+def link_pair(n: int, links: Array, w: Array, p: Array, new_links: Array) -> None:
+    """The links of row `n` and the next, if there is one."""
+    rows = len(w)
+    for k in range(n, min(n + 2, rows)):
+        row = new_links[(k - n) * rows : (k - n + 1) * rows]
+        link_row(links[(k - n) * rows :], at(w, k), w, p, row)
+        put(row, k, full(row, 0))
+
+
+@fused
+def link_pair_alone(n: int, links: Array, w: Array, p: Array, new_links: Array) -> None:
+    """The same of one sample."""
+    (k, lane), rows = divmod(n, LANES), len(w)
+    link_row(links, w[k, lane], w, p, new_links[:rows])
+    link_row(links[rows:], w[k, lane + 1], w, p, new_links[rows : 2 * rows])
+    new_links[k, lane] = new_links[rows + k, lane + 1] = 0
+
+
+@fused
+def link_row(links: Array, to: Any, w: Array, p: Array, new_links: Array) -> None:
+    """The links of one row, as if it could follow itself."""
+    for m in range(len(w)):
+        put(new_links, m, (1 - to - at(w, m)) * at(links, m) + to * at(p, m))
+
+
+@fused
+def unwritten(w: Array, alone: int) -> Any:
+    """How much was not written."""
+    written = full(w, 0)
+    for n in range(len(w)):
+        written += at(w, n)
+    return 1 - over(written, w, alone)
+
+
+@fused
+def follow_pair(n: int, pair: Array, vectors: Array, ahead: Array, back: Array, rows: int) -> None:
     """What the links of row `n` and the next, if there is one, give to `ahead`, and add to `back`."""
     last = min(n + 1, rows - 1)
+    other = pair[(last - n) * rows :]
     for j in range(0, len(vectors), rows):
         x, y = at(vectors, j + n), at(vectors, j + last)
         if last == n:
             y = full(vectors, 0)
-        ahead_x, ahead_y = full(ahead, 0), full(ahead, 0)
-        for m in range(rows):
-            of_x, of_y, v = at(pair, m), at(pair, (last - n) * rows + m), at(vectors, j + m)
-            ahead_x += of_x * v
-            ahead_y += of_y * v
-            put(back, j + m, at(back, j + m) + of_x * x + of_y * y)
-        put(ahead, j + last, ahead_y)
-        put(ahead, j + n, ahead_x)
+        of_one, of_other = follow(pair[:rows], other, vectors[j:], x, y, back[j:])
+        put(ahead, j + last, of_other)
+        put(ahead, j + n, of_one)
 
 
 @fused
-def links_back(
-    sizes: Sizes, heads: Array, old: AccessState[Array], weights: Array, d_read: Array, d_new: AccessState[Array],
-    d_old: AccessState[Array], d_heads: Array, d_weights: Array,
-) -> None:  # fmt: skip
-    """Back through `follow` and `link`; adds to `d_weights`, and to `d_old` but for the links."""
-    word, rows, readers, _, linked = sizes
-    size, before = head_size(heads, readers), old.read_weights
-    ahead, back, d_row = zeros(d_read), zeros(d_read), np.empty((rows, LANES), d_read.dtype)
-    pair = np.empty((2 * rows, LANES), d_read.dtype)
-    for i in range(linked):
-        w, p = weights[i * rows : (i + 1) * rows], old.precedence[i * rows : (i + 1) * rows]
-        d_w, d_p = d_weights[i * rows :], d_old.precedence[i * rows :]
-        precedence_back(w, p, d_new.precedence[i * rows :], d_w, d_p)
-        clear(back)
-        for n in range(0, rows, 2):  # as `along` takes them
-            for k in range(n, min(n + 2, rows)):
-                link_row(old.links[(i * rows + k) * rows :], k, w, p, pair[(k - n) * rows :])
-            along(rows, pair, n, d_read, ahead, back)
-            for k in range(n, min(n + 2, rows)):
-                first = (i * rows + k) * rows
-                for m in range(rows):
-                    put(d_row, m, at(d_new.links, first + m))
-                for j in range(readers):
-                    modes = heads[j * size + word + 2 + i :]
-                    along_back(modes, linked, k, before[j * rows :], d_read[j * rows :], d_row)
-                link_row_back(old.links[first:], k, w, p, d_row, d_old.links[first:], d_w, d_p)
-        for j in range(readers):
-            mode, first = j * size + word + 2 + i, j * rows
-            modes_back(
-                heads[mode:], linked, before[first : first + rows], ahead[first:], back[first:],
-                d_heads[mode:], d_old.read_weights[first:],
-            )  # fmt: skip
+def follow_pair_alone(n: int, pair: Array, vectors: Array, ahead: Array, back: Array, rows: int) -> None:
+    """The same of one sample."""
+    for j in range(n // LANES, len(vectors), rows):
+        own, lane = j - n // LANES, n % LANES
+        of_one, of_other = follow(
+            pair[:rows], pair[rows:], vectors[own:], vectors[j, lane], vectors[j, lane + 1], back[own:]
+        )
+        ahead[j, lane], ahead[j, lane + 1] = total(of_one), total(of_other)
 
 
 @fused
-def modes_back(
-    modes: Array, linked: int, before: Array, ahead: Array, back: Array, d_modes: Array, d_before: Array
-) -> None:
-    """Back to the modes of one read head and to what it read before; adds to that."""
-    backward, forward = at(modes, 0), at(modes, linked)
-    d_backward, d_forward = full(modes, 0), full(modes, 0)
-    for n in range(len(before)):
-        d_backward += at(before, n) * at(ahead, n)
-        d_forward += at(before, n) * at(back, n)
-        add(d_before, n, backward * at(ahead, n) + forward * at(back, n))
-    put(d_modes, 0, d_backward)
-    put(d_modes, linked, d_forward)
-
-
-@fused
-def along_back(modes: Array, linked: int, n: int, before: Array, d_read: Array, d_links: Array) -> None:
-    """Add what one read head asks of the links of row `n`."""
-    ago, onward = at(modes, 0) * at(before, n), at(modes, linked) * at(d_read, n)
-    for m in range(len(d_links)):
-        add(d_links, m, onward * at(before, m) + ago * at(d_read, m))
-
-
-@fused
-def link_row_back(
-    links: Array, n: int, w: Array, p: Array, d_new_links: Array, d_links: Array, d_w: Array, d_p: Array
-) -> None:
-    """Back through the links of row `n`; adds to `d_w` and `d_p`."""
-    put(d_new_links, n, full(w, 0))
-    to, d_to = at(w, n), full(w, 0)
-    for m in range(len(w)):
-        d_link = at(d_new_links, m)
-        lost = d_link * at(links, m)
-        put(d_links, m, (1 - to - at(w, m)) * d_link)
-        add(d_w, m, 0 - lost)
-        add(d_p, m, to * d_link)
-        d_to += d_link * at(p, m) - lost
-    add(d_w, n, d_to)
-
-
-@fused
-def precedence_back(w: Array, p: Array, d_precedence: Array, d_w: Array, d_p: Array) -> None:
-    """Back through the precedence after a write; adds to `d_w` and `d_p`."""
-    kept, lost = unwritten(w), full(w, 0)
-    for n in range(len(w)):
-        lost += at(d_precedence, n) * at(p, n)
-    for n in range(len(w)):
-        add(d_p, n, kept * at(d_precedence, n))
-        add(d_w, n, at(d_precedence, n) - lost)
+def follow(one: Array, other: Array, vector: Array, x: Any, y: Any, back: Array) -> Any:
+    """What the links of two rows give ahead; adds to `back` what they give where the vector has x and y."""
+    of_one, of_other = full(back, 0), full(back, 0)
+    for m in range(len(one)):
+        p, q, v = at(one, m), at(other, m), at(vector, m)
+        of_one += p * v
+        of_other += q * v
+        put(back, m, at(back, m) + p * x + q * y)
+    return of_one, of_other

@@ -4,7 +4,7 @@ import numpy as np
 
 from fogbench.learned.dnc.job import Sizes, head_size
 from fogbench.learned.kernels.instructions import at, full, put
-from fogbench.learned.kernels.lane_arrays import add, lay
+from fogbench.learned.kernels.lane_arrays import add, lay, over
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
@@ -13,7 +13,7 @@ from fogbench.worlds.types import Array
 @fused
 def write(sizes: Sizes, heads: Array, memory: Array, weights: Array, new_memory: Array) -> None:
     """All heads erase, then all add."""
-    word, rows, _, writers, _ = sizes
+    word, rows, _, writers, _, _ = sizes
     size = head_size(heads, writers)
     for d in range(word):
         for n in range(rows):
@@ -31,7 +31,7 @@ def write_back(
     d_weights: Array,
 ) -> None:  # fmt: skip
     """Back through `write`; adds to `d_weights`."""
-    word, rows, _, writers, _ = sizes
+    word, rows, _, writers, _, _ = sizes
     size = head_size(heads, writers)
     for d in range(word):
         value, erase = word + 1 + d, 2 * word + 1 + d
@@ -54,14 +54,14 @@ def write_back(
 @fused
 def read(sizes: Sizes, memory: Array, weights: Array, reads: Array) -> None:
     """Each read head reads the sum of the rows, times its weights."""
-    word, rows, readers, _, _ = sizes
+    word, rows, readers, _, _, alone = sizes
     sums = np.empty((1, LANES), memory.dtype)
     for j in range(readers):
         for d in range(word):
             total = full(memory, 0)
             for n in range(rows):
                 total += at(weights, j * rows + n) * at(memory, d * rows + n)
-            put(sums, 0, total)
+            put(sums, 0, over(total, sums, alone))
             for lane in range(len(reads)):
                 reads[lane, j * word + d] = sums[0, lane]
 
@@ -69,9 +69,9 @@ def read(sizes: Sizes, memory: Array, weights: Array, reads: Array) -> None:
 @fused
 def read_back(sizes: Sizes, memory: Array, weights: Array, d_samples: Array, d_memory: Array, d_weights: Array) -> None:
     """Back through `read`; adds to `d_memory` and `d_weights`."""
-    word, rows, readers, _, _ = sizes
+    word, rows, readers, _, _, alone = sizes
     d_reads = np.empty((readers * word, LANES), memory.dtype)
-    lay(d_samples, d_reads)
+    lay(d_samples, d_reads, alone)
     for j in range(readers):
         for d in range(word):
             g = at(d_reads, j * word + d)

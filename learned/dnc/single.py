@@ -14,7 +14,7 @@ from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.controller_kernels import rows, squash_sample
 from fogbench.learned.dnc.heads import Heads
 from fogbench.learned.dnc.job import SIZES, STATES, sizes_of, state_of, taped
-from fogbench.learned.dnc.layout import Packed, layout
+from fogbench.learned.dnc.layout import Packed, arranged
 from fogbench.learned.dnc.step import step
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.linear import apply
@@ -60,7 +60,7 @@ def single_step(
         The next h and c, what is read, and y; and the memory after.
     """
     x, h, _, reads = vectors = [vector.contiguous() for vector in vectors]
-    lies = layout(heads, access.usage.shape[-1], x.shape[:-1])
+    lies = arranged(heads, access.usage.shape[-1], x.shape[:-1], LANES)
     old, new = lies.buffers(access), lies.empty(x)
     after = [torch.empty_like(vector) for vector in (h, h, reads)]
     after.append(x.new_empty(*x.shape[:-1], len(weights.output)))

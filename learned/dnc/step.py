@@ -6,17 +6,15 @@ block. Each loop gets `fogbench.learned.dnc.job.JOB`, of which it needs some fie
 
 from typing import Any
 
-import numpy as np
-
 from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.activation import activate, activate_back
 from fogbench.learned.dnc.allocation import allocate, allocate_back, use, use_back
 from fogbench.learned.dnc.content import address, address_back, recall, recall_back
 from fogbench.learned.dnc.job import JOB, Sizes, Tape, samples_of, sizes_of, state_of, tape_of
-from fogbench.learned.dnc.links import follow, link, links_back
+from fogbench.learned.dnc.links import link, link_again
+from fogbench.learned.dnc.links_back import links_back
 from fogbench.learned.dnc.rows import read, read_back, write, write_back
 from fogbench.learned.kernels.lane_arrays import clear, same, zeros
-from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.native import Loop
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
@@ -49,8 +47,7 @@ def relink(number: Any, job: Any, block: int) -> None:
     """Make `new_links` again, of `old`, `old_links` and `new`."""
     old = state_of(number, job.old, job.old_links, job, block)
     new = state_of(number, job.new, job.new_links, job, block)
-    precedence = np.empty((job.linked * job.rows, LANES), number)
-    link(job.linked, old, new.write_weights, new.links, precedence)
+    link_again(sizes_of(job), old, new)
 
 
 @kernel
@@ -58,16 +55,15 @@ def step(
     sizes: Sizes, interface: Array, old: AccessState[Array], new: AccessState[Array], reads: Array, tape: Tape[Array]
 ) -> None:
     """One step of one block."""
-    word, _, readers, writers, linked = sizes
+    _, _, readers, writers, _, _ = sizes
     activate(sizes, interface, tape.write_heads, tape.read_heads)
     use(sizes, tape.read_heads, old, new.usage)
-    address(word, writers, tape.write_heads, old.memory, tape.old_lengths, tape.write_similar)
+    address(sizes, writers, tape.write_heads, old.memory, tape.old_lengths, tape.write_similar)
     allocate(sizes, tape.write_heads, new.usage, tape.write_similar, tape.before, new.write_weights)
     write(sizes, tape.write_heads, old.memory, new.write_weights, new.memory)
-    link(linked, old, new.write_weights, new.links, new.precedence)
-    address(word, readers, tape.read_heads, new.memory, tape.new_lengths, tape.read_similar)
+    address(sizes, readers, tape.read_heads, new.memory, tape.new_lengths, tape.read_similar)
     recall(readers, tape.read_heads, tape.read_similar, new.read_weights)
-    follow(sizes, tape.read_heads, new.links, old.read_weights, new.read_weights)
+    link(sizes, tape.read_heads, old, new)
     read(sizes, new.memory, new.read_weights, reads)
 
 
@@ -77,7 +73,7 @@ def step_back(
     d_new: AccessState[Array], d_old: AccessState[Array], d_interface: Array,
 ) -> None:  # fmt: skip
     """Back through one step of one block. The links of `new` are not looked at."""
-    word, _, readers, writers, _ = sizes
+    _, _, readers, writers, _, _ = sizes
     d_write_heads, d_read_heads = zeros(tape.write_heads), zeros(tape.read_heads)
     d_memory, d_usage = same(d_new.memory), same(d_new.usage)
     d_read, d_write = same(d_new.read_weights), same(d_new.write_weights)
@@ -88,7 +84,7 @@ def step_back(
     recall_back(readers, tape.read_heads, tape.read_similar, d_read, d_read_heads, d_read_similar)
     links_back(sizes, tape.read_heads, old, new.write_weights, d_read, d_new, d_old, d_read_heads, d_write)
     address_back(
-        word, readers, tape.read_heads, new.memory, tape.new_lengths, tape.read_similar, d_read_similar,
+        sizes, readers, tape.read_heads, new.memory, tape.new_lengths, tape.read_similar, d_read_similar,
         d_read_heads, d_memory,
     )  # fmt: skip
     write_back(sizes, tape.write_heads, old.memory, new.write_weights, d_memory, d_write_heads, d_old.memory, d_write)
@@ -97,7 +93,7 @@ def step_back(
         d_write_heads, d_write_similar, d_usage,
     )  # fmt: skip
     address_back(
-        word, writers, tape.write_heads, old.memory, tape.old_lengths, tape.write_similar, d_write_similar,
+        sizes, writers, tape.write_heads, old.memory, tape.old_lengths, tape.write_similar, d_write_similar,
         d_write_heads, d_old.memory,
     )  # fmt: skip
     use_back(sizes, tape.read_heads, old, d_usage, d_read_heads, d_old.read_weights, d_old.usage)

@@ -78,6 +78,27 @@ def until(_: Any, x: Any, limit: Any, within: Any, beyond: Any) -> Any:
 
 
 @instruction
+def total(_: Any, x: Any) -> Any:
+    """The sum of all lanes, a plain number."""
+
+    def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        zero = ir.Constant(values[0].type.element, -0.0)
+        return _reduced("fadd", builder, [zero, values[0]], ("reassoc",))
+
+    return x.number(x), build
+
+
+@instruction
+def largest(_: Any, x: Any) -> Any:
+    """The largest of all lanes, a plain number; NaN only where all are."""
+
+    def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
+        return _reduced("fmax", builder, values, ())
+
+    return x.number(x), build
+
+
+@instruction
 def root(_: Any, x: Any) -> Any:
     """The square root."""
     return x(x), _named("sqrt")
@@ -107,10 +128,20 @@ def _named(name: str) -> Callable[..., Any]:
     """A builder of calls to LLVM's function of that name."""
 
     def build(_context: Any, builder: Any, _kinds: Any, values: Any) -> Any:
-        (x,) = values
-        number = {"float": "f32", "double": "f64"}[str(x.type.element)]
-        kind = ir.FunctionType(x.type, [x.type])
-        full_name = f"llvm.{name}.v{LANES}{number}"
-        return builder.call(builder.module.globals.get(full_name) or ir.Function(builder.module, kind, full_name), [x])
+        return builder.call(_of_llvm(name, builder.module, values, values[0].type), values)
 
     return build
+
+
+def _reduced(name: str, builder: Any, values: Any, flags: tuple[str, ...]) -> Any:
+    """A call of LLVM's function that makes one number of all lanes, the last of the values."""
+    function = _of_llvm(f"vector.reduce.{name}", builder.module, values, values[-1].type.element)
+    return builder.call(function, values, fastmath=flags)
+
+
+def _of_llvm(name: str, module: Any, values: Any, result: Any) -> Any:
+    """LLVM's function of that name, for lanes as the last of the values."""
+    number = {"float": "f32", "double": "f64"}[str(values[-1].type.element)]
+    full_name = f"llvm.{name}.v{LANES}{number}"
+    kind = ir.FunctionType(result, [value.type for value in values])
+    return module.globals.get(full_name) or ir.Function(module, kind, full_name)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from fogbench.learned.dnc.access import AccessState, access, allocation, blank, 
 from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.dnc.fast import fast_access
 from fogbench.learned.dnc.heads import Heads
+from fogbench.learned.dnc.layout import MANY
 from fogbench.worlds.types import Array
 
 COUNTS = [1, 2, 4]
@@ -24,8 +26,14 @@ def plain(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[
     return access(controls(heads, interface), state)
 
 
+def many(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
+    """The fast form, with rows side by side."""
+    with rows_side_by_side(True):
+        return fast_access(heads, interface, state)
+
+
 Form = Callable[[Heads, Tensor, AccessState[Tensor]], tuple[Tensor, AccessState[Tensor]]]
-FORMS = pytest.mark.parametrize("form", [plain, fast_access])
+FORMS = pytest.mark.parametrize("form", [plain, fast_access, many])
 
 
 @contextmanager
@@ -35,6 +43,13 @@ def threads_of_torch(threads: int) -> Iterator[None]:
     torch.set_num_threads(threads)
     yield
     torch.set_num_threads(before)
+
+
+@contextmanager
+def rows_side_by_side(many: bool) -> Iterator[None]:
+    """Take all numbers of rows for many, or for few."""
+    with patch.dict(MANY, dict.fromkeys(MANY, 1 if many else 1000)):
+        yield
 
 
 class Loop:
@@ -179,6 +194,7 @@ def gradients(
 
 @settings(max_examples=40)
 @given(
+    wide=st.booleans(),
     batch=st.sampled_from([1, 3, 16, 17, 40]),
     reads=st.integers(1, 4),
     writes=st.integers(1, 4),
@@ -191,24 +207,28 @@ def gradients(
     seed=st.integers(0, 999),
 )
 def test_gradients_are_those_of_the_plain_form(
-    batch: int, reads: int, writes: int, word: int, links: bool, rows: int, every: int, threads: int, dense: bool,
-    seed: int,
+    wide: bool, batch: int, reads: int, writes: int, word: int, links: bool, rows: int, every: int, threads: int,
+    dense: bool, seed: int,
 ) -> None:  # fmt: skip
-    """Through five steps, by every input and part of the first state, to 1e-5 in norm, links kept or linked again."""
+    """Through five steps, by every input and part of the first state, to 1e-5 in norm.
+
+    Whatever lies side by side, links kept or linked again.
+    """
     generator = torch.Generator().manual_seed(seed)
     heads = Heads(reads, writes, word, links)
     _, state = plain(heads, draw(generator, batch, heads.interface), used(heads, rows, batch, generator))
     start = [part.requires_grad_() for part in state]
     interfaces = [draw(generator, batch, heads.interface).requires_grad_() for _ in range(5)]
     expected = gradients(plain, heads, interfaces, start, seed, dense=dense)
-    with threads_of_torch(threads):
+    with threads_of_torch(threads), rows_side_by_side(wide):
         fast = gradients(lambda *step: fast_access(*step, every), heads, interfaces, start, seed, dense=dense)
     for mine, theirs in zip(fast, expected, strict=True):
         wanted = torch.zeros_like(mine) if theirs is None else theirs  # past write weightings have no gradient
         assert (mine - wanted).norm() <= 1e-5 * wanted.norm()
 
 
-def test_batches_single_samples_and_threads_agree_to_the_bit() -> None:
+@pytest.mark.parametrize("form", [fast_access, many])
+def test_batches_single_samples_and_threads_agree_to_the_bit(form: Form) -> None:
     """Each sample of a batch gets the bits that it gets alone, on one thread and on two."""
     generator = torch.Generator().manual_seed(0)
     heads = Heads(2, 2, 5)
@@ -217,31 +237,32 @@ def test_batches_single_samples_and_threads_agree_to_the_bit() -> None:
     results = []
     for threads in (1, 2):
         with threads_of_torch(threads):
-            reads, state = fast_access(heads, interface, start)
-            results.append((reads, *fast_access(heads, interface, state)[1]))
-    alone = fast_access(heads, interface[21], AccessState(*(part[21] for part in start)))[1]
-    _, alone = fast_access(heads, interface[21], alone)
+            reads, state = form(heads, interface, start)
+            results.append((reads, *form(heads, interface, state)[1]))
+    alone = form(heads, interface[21], AccessState(*(part[21] for part in start)))[1]
+    _, alone = form(heads, interface[21], alone)
     for one, two, single in zip(results[0][1:], results[1][1:], alone, strict=True):
         assert torch.equal(one, two)
         assert torch.equal(one[21], single)
     assert torch.equal(results[0][0], results[1][0])
 
 
-def test_states_may_lie_in_any_way() -> None:
+@pytest.mark.parametrize("form", [fast_access, many])
+def test_states_may_lie_in_any_way(form: Form) -> None:
     """A state laid out by rows, transposed, or every other sample of a larger one gives the same."""
     generator = torch.Generator().manual_seed(0)
     heads = Heads(2, 2, 5)
     start = used(heads, 9, 6, generator)
     interface = draw(generator, 6, heads.interface)
-    _, wanted = fast_access(heads, interface, start)
+    _, wanted = form(heads, interface, start)
     transposed = AccessState(*(part.mT.contiguous().mT if part.dim() > 1 else part for part in start))
     spread = AccessState(*(torch.stack([part, part], 1).flatten(0, 1)[::2] for part in start))
-    inside = AccessState(*(part[::2] for part in fast_access(heads, interface, start)[1]))
+    inside = AccessState(*(part[::2] for part in form(heads, interface, start)[1]))
     for state in (transposed, spread):
-        _, after = fast_access(heads, interface, state)
+        _, after = form(heads, interface, state)
         assert all(map(torch.equal, after, wanted))
-    _, halves = fast_access(heads, interface[::2], inside)
-    _, whole = fast_access(heads, interface, wanted)
+    _, halves = form(heads, interface[::2], inside)
+    _, whole = form(heads, interface, wanted)
     assert all(map(torch.equal, halves, (part[::2] for part in whole)))
 
 
@@ -375,20 +396,26 @@ def test_one_sample_is_a_batch_of_one(fast: bool) -> None:
     torch.testing.assert_close(rest, outputs[4:])
 
 
+@pytest.mark.parametrize("rows", [1, 6, 16, 33, 64])
 @pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
 @pytest.mark.parametrize("batch", [(), (1,)])
 @pytest.mark.parametrize("links", [True, False])
-def test_a_single_step_is_that_with_gradients(links: bool, batch: tuple[int, ...], dtype: torch.dtype) -> None:
+def test_a_single_step_is_that_with_gradients(
+    links: bool, batch: tuple[int, ...], dtype: torch.dtype, rows: int
+) -> None:
     """Once settled, a step of one sample runs in one call, to the same outputs and states, clipped or not."""
     torch.manual_seed(0)
-    network = DNC(3, 5, Heads(2, 2, 4, links), rows=6, hidden=16, clip=1).to(dtype)
+    network = DNC(3, 5, Heads(2, 2, 4, links), rows=rows, hidden=16, clip=1).to(dtype)
     with torch.no_grad():
         for parameter in (*network.controller.parameters(), *network.output.parameters()):
             parameter.mul_(8)
     sequence = torch.randn(*batch, 7, 3, dtype=dtype)
-    expected = network(sequence)
+    parts = used(network.heads, rows, 1, torch.Generator().manual_seed(0))
+    drawn = AccessState(*(part.to(dtype).reshape(*batch, *part.shape[1:]) for part in parts))
+    start = network.blank(batch)._replace(access=drawn)
+    expected = network(sequence, start)
     network.settle()
-    outputs, state = network(sequence)
+    outputs, state = network(sequence, start)
     torch.testing.assert_close((outputs, state), expected)
     assert not outputs.requires_grad
     assert state.cell.abs().max() == outputs.abs().max() == 1
