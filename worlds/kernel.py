@@ -40,6 +40,8 @@ OPTIONS = ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INT
 MONTH = 30 * 24 * 3600
 """Seconds without use after which compiled kernels are removed."""
 
+numba_doors.widen_vectors()
+
 _CALLBACKS: list[object] = []  # so that their code stays
 
 

@@ -11,8 +11,9 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from numba import types
+from numba.core import config
 from numba.core.ccallback import CFunc
-from numba.core.codegen import JITCPUCodegen
+from numba.core.codegen import JITCPUCodegen, get_host_cpu_features
 from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
@@ -30,6 +31,16 @@ class Store(Protocol):
 
     def save_overload(self, signature: object, form: Any) -> None:
         """Keep the form of a signature."""
+
+
+def widen_vectors() -> None:
+    """Let loops fill whole registers of 512 bits where the processor has them; LLVM prefers halves on many of Intel's.
+
+    Numba asks for the features of the processor when it compiles for the first time. What a user names is left.
+    """
+    features: str = get_host_cpu_features()
+    if "+avx512f" in features.split(",") and config.CPU_FEATURES is None:  # type: ignore[attr-defined]  # Numba makes it
+        config.CPU_FEATURES = f"{features},-prefer-256-bit"  # type: ignore[attr-defined]  # likewise
 
 
 def attach(compiled: Any, store: Store) -> None:

@@ -10,11 +10,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from numba.core.codegen import get_host_cpu_features
 
 import fogbench
 from fogbench import worlds
 from fogbench.worlds import kernel
+from fogbench.worlds.types import Array
 
 WITHOUT_RIGHTS = """
 import ctypes, os, struct
@@ -311,3 +314,25 @@ def test_a_kernel_without_a_file_is_compiled() -> None:
     """What is typed at a prompt can be a kernel too."""
     script = "from fogbench.worlds.kernel import kernel\ntwice = kernel(lambda x: 2 * x)\nprint(twice(21))"
     assert start(Path(fogbench.__file__).parents[1], script).communicate() == ("42\n", "")
+
+
+def test_loops_fill_the_registers_that_the_processor_has() -> None:
+    """Those of 512 bits too, which LLVM would use by halves on many processors."""
+
+    @kernel.kernel
+    def triple(numbers: Array) -> None:
+        for n in range(len(numbers)):
+            numbers[n] *= 3
+
+    triple(np.ones(64, np.float32))
+    (code,) = triple.inspect_asm().values()  # type: ignore[attr-defined]  # Numba's
+    assert ("zmm" in code) == ("+avx512f" in get_host_cpu_features().split(","))
+
+
+def test_features_that_somebody_names_are_left(folder: Path) -> None:
+    """And kernels for them are kept apart from others."""
+    script = SCRIPT + "import numba\nassert numba.config.CPU_FEATURES == ''\n"
+    assert told(end(start(folder))) == COLD
+    environment = {"NUMBA_CPU_FEATURES": "", "NUMBA_CPU_NAME": "generic"}
+    assert told(end(start(folder, script, **environment))) == COLD
+    assert told(end(start(folder, script, **environment))) == WARM
