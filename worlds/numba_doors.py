@@ -38,7 +38,7 @@ def widen_vectors() -> None:
 
     Numba asks for the features of the processor when it compiles for the first time. What a user names is left.
     """
-    features: str = get_host_cpu_features()
+    features: str = get_host_cpu_features()  # type: ignore[no-untyped-call]  # Numba's
     if "+avx512f" in features.split(",") and config.CPU_FEATURES is None:  # type: ignore[attr-defined]  # Numba makes it
         config.CPU_FEATURES = f"{features},-prefer-256-bit"  # type: ignore[attr-defined]  # likewise
 
