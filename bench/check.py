@@ -29,7 +29,7 @@ def check_all(paths: Sequence[Path]) -> None:
             say(f"  {name} is skipped: {reason}", console)
         refuse_idle(scenario)
 
-    with console.status("Drawing the first worlds, counting tasks; the first time also compiling, some 15 s"):
+    with console.status("Drawing the first worlds, counting tasks, and the first time compiling"):
         scenarios = _read_sound(paths)
     each(scenarios, console, check)
 
@@ -39,8 +39,8 @@ def _read_sound(paths: Sequence[Path]) -> list[Scenario]:
     scenarios, errors = read_each(paths, None)
     lines = [line for error in errors for line in error.lines]
     for scenario in [*(error.rest for error in errors if error.rest), *scenarios]:
-        lines += mistakes(scenario.path, scenario.variants)
-        lines += _rehearsed(scenario, blamed=bool(lines))
+        found = [*mistakes(scenario.path, scenario.variants)]
+        lines += found + _rehearsed(scenario, blamed=bool(found) or scenario not in scenarios)
     if lines:
         raise ScenarioError(lines)
     return scenarios

@@ -4,7 +4,6 @@ What a library has is kept if it is loaded, or else as soon as it is. To keep on
 """
 
 import gc
-import io
 import locale
 import os
 import signal
@@ -94,11 +93,7 @@ def _open_streams(module: ModuleType, was: list[tuple[Any, bool, tuple[int, int]
 
 
 def _reopened(number: int, stream: TextIO) -> TextIO:
-    """A stream as the closed one was."""
-    file: Any = type(cast(Any, stream.buffer).raw)
-    raw = file(number, "w" if number else "r", closefd=False)
-    whole = io.BufferedWriter(raw) if number else io.BufferedReader(raw)
-    return io.TextIOWrapper(whole, stream.encoding, stream.errors, line_buffering=True)
+    return cast(TextIO, os.fdopen(number, stream.mode, 1, stream.encoding, stream.errors, closefd=False))
 
 
 def _set_environment(_: ModuleType, variables: dict[str, str]) -> None:

@@ -3,7 +3,6 @@
 A pipe that nobody reads any more would raise in the midst of a decision, and a full one would hold it up.
 """
 
-import io
 import os
 import sys
 from collections.abc import Iterator
@@ -53,5 +52,4 @@ def print_there(prints: Prints) -> None:
     """Let the standard streams of this process be those pipes; they take every letter."""
     for number, name, pipe in zip((1, 2), ("stdout", "stderr"), prints, strict=True):
         os.dup2(pipe.fileno(), number)
-        stream = io.BufferedWriter(io.FileIO(number, "w", closefd=False))
-        setattr(sys, name, io.TextIOWrapper(stream, "utf-8", "backslashreplace", line_buffering=True))
+        setattr(sys, name, os.fdopen(number, "w", 1, "utf-8", "backslashreplace", closefd=False))

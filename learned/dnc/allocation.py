@@ -7,7 +7,7 @@ import numpy as np
 from fogbench.learned.dnc.access import EPSILON, AccessState
 from fogbench.learned.dnc.job import Sizes, head_size
 from fogbench.learned.kernels.instructions import at, full, put
-from fogbench.learned.kernels.lane_arrays import add, zeros
+from fogbench.learned.kernels.lane_arrays import add, unfilled, zeros
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.sorting import gather, ordered, scatter
 from fogbench.worlds.kernel import fused, kernel
@@ -59,7 +59,7 @@ def use_back(
 def allocate(sizes: Sizes, heads: Array, usage: Array, similar: Array, before: Array, weights: Array) -> None:
     """The write weightings; a head sees as used what the heads before it are allocated."""
     _, rows, _, writers, _, alone = sizes
-    size, used = head_size(heads, writers), np.empty((rows, LANES), usage.dtype)
+    size, used = head_size(heads, writers), unfilled(rows, usage)
     for n in range(rows):
         put(used, n, raised(at(usage, n)))
     for i in range(writers):
@@ -79,8 +79,8 @@ def allocate_back(
 ) -> None:  # fmt: skip
     """Back through `allocate`, from the last head to the first; adds to `d_usage`."""
     _, rows, _, writers, _, alone = sizes
-    size, used, d_used = head_size(heads, writers), np.empty((writers * rows, LANES), usage.dtype), zeros(usage)
-    d_free = np.empty((rows, LANES), usage.dtype)
+    size, used, d_used = head_size(heads, writers), unfilled(writers * rows, usage), zeros(usage)
+    d_free = unfilled(rows, usage)
     for n in range(rows):
         u = raised(at(usage, n))
         for i in range(writers):

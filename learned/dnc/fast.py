@@ -1,4 +1,4 @@
-"""The memory access of a differentiable neural computer on the CPU: sixteen samples at a time, forward and backward.
+"""The memory access of a differentiable neural computer on the CPU, forward and backward.
 
 The links are most of what the backward pass needs, and they follow from the write weightings. So they may be kept every
 few steps only, and be worked out again in between.

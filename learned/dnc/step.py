@@ -1,7 +1,7 @@
-"""One step of the memory access and the way back through it, sixteen samples at a time.
+"""One step of the memory access and the way back through it: of sixteen samples, or of sixteen rows of one at a time.
 
 The file `access` has the equations and their letters, `kernels/lanes` the numbers: each is that of all samples of a
-block. Each loop gets `fogbench.learned.dnc.job.JOB`, of which it needs some fields.
+block, or of all its rows. Each loop gets `fogbench.learned.dnc.job.JOB`, of which it needs some fields.
 """
 
 from typing import Any

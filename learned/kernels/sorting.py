@@ -4,10 +4,8 @@ The network is Batcher's merge exchange (Knuth, The Art of Computer Programming,
 some N * (log2 N)^2 / 4 exchanges, whatever the numbers are.
 """
 
-import numpy as np
-
 from fogbench.learned.kernels.instructions import at, full, put, until
-from fogbench.learned.kernels.lane_arrays import same
+from fogbench.learned.kernels.lane_arrays import same, unfilled
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
@@ -16,7 +14,7 @@ from fogbench.worlds.types import Array
 @fused
 def ordered(rows: Array) -> tuple[Array, Array]:
     """The numbers of each lane in their order, [N, 16], and from which row each came; of equals the first is first."""
-    numbers, order = same(rows), np.empty((len(rows), LANES), rows.dtype)
+    numbers, order = same(rows), unfilled(len(rows), rows)
     for n in range(len(rows)):
         put(order, n, full(rows, n))
     first = 1
