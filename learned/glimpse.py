@@ -9,7 +9,7 @@ from torch import Tensor
 
 from fogbench.learned.agent import PolicyAgent
 from fogbench.learned.dnc.dnc import DNCState
-from fogbench.learned.networks.memory import LSTMState
+from fogbench.learned.networks.memory import GRUState, LSTMState
 from fogbench.learned.networks.network import Network
 from fogbench.worlds.types import Array, Observation
 
@@ -59,6 +59,8 @@ def held(state: Any) -> dict[str, Array]:
             parts = {"controller": hidden, "memory": access.memory.mT, "written": written, "read": read}
         case LSTMState(hidden, cell):
             parts = {"controller": hidden, "cell": cell}
+        case GRUState(hidden):
+            parts = {"controller": hidden}
         case _:
             parts = {}
     return {name: part.flatten().cpu().numpy().copy() for name, part in parts.items()}

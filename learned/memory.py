@@ -1,4 +1,4 @@
-"""Settings of policies that remember: features of what is seen go into a DNC, an LSTM, or a layer that forgets.
+"""Settings of policies that remember: features of what is seen go into a DNC, an LSTM, a GRU, or a layer that forgets.
 
 Importing this imports no torch.
 """
@@ -21,8 +21,8 @@ HeadCount = Annotated[int, Field(ge=1, le=64)]
 class Remembering(GridPolicy):
     """A policy with a memory between what it sees and what it does."""
 
-    memory: Literal["dnc", "lstm", "feedforward"] = "dnc"
-    """A DNC, the LSTM of its controller alone, or, as an ablation, a layer that remembers nothing."""
+    memory: Literal["dnc", "lstm", "gru", "feedforward"] = "dnc"
+    """A DNC, the LSTM of its controller alone, a GRU, or, as an ablation, a layer that remembers nothing."""
     features: Size = 256
     """Numbers that the memory is told at a step."""
     hidden: Size = 256
@@ -55,6 +55,8 @@ class Remembering(GridPolicy):
     def _memory_shapes(self) -> Shapes:
         if self.memory == "lstm":
             return lstm_shapes(self.features, len(OUTPUTS), self.hidden)
+        if self.memory == "gru":
+            return gru_shapes(self.features, len(OUTPUTS), self.hidden)
         if self.memory == "feedforward":
             return feedforward_shapes(self.features, len(OUTPUTS), self.hidden)
         return dnc_shapes(self.features, len(OUTPUTS), self.heads, self.hidden)
@@ -63,6 +65,13 @@ class Remembering(GridPolicy):
 def lstm_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
     """Those of the controller of a DNC without its memory."""
     return parts(controller=controller_shapes(inputs, hidden), output=linear(hidden, outputs))
+
+
+def gru_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:
+    """Those of a GRU in the place of the controller, by the names that PyTorch has for them."""
+    weights: Shapes = {"weight_ih": (3 * hidden, inputs), "weight_hh": (3 * hidden, hidden)}
+    biases: Shapes = {"bias_ih": (3 * hidden,), "bias_hh": (3 * hidden,)}
+    return parts(controller={**weights, **biases}, output=linear(hidden, outputs))
 
 
 def feedforward_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:

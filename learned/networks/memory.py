@@ -1,4 +1,4 @@
-"""Networks that remember: features of what is seen go into a DNC, an LSTM, or a layer that forgets; scores come out."""
+"""Networks that remember: features of what is seen go into a DNC, an LSTM, a GRU, or a layer that forgets."""
 
 from typing import Any, NamedTuple, cast
 
@@ -10,7 +10,7 @@ from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import OUTPUTS
 from fogbench.learned.layers import linear
-from fogbench.learned.memory import Remembering, feedforward_shapes, lstm_shapes
+from fogbench.learned.memory import Remembering, feedforward_shapes, gru_shapes, lstm_shapes
 from fogbench.learned.networks.network import Network
 
 
@@ -37,11 +37,13 @@ class RememberingNetwork(Network):
         return self.memory.blank(batch)
 
 
-def remember(settings: Remembering) -> "DNC | LSTM | FeedForward":
+def remember(settings: Remembering) -> "DNC | LSTM | GRU | FeedForward":
     """The memory of some settings, with weights drawn anew."""
     inputs, outputs, hidden = settings.features, len(OUTPUTS), settings.hidden
     if settings.memory == "lstm":
         return LSTM(inputs, outputs, hidden)
+    if settings.memory == "gru":
+        return GRU(inputs, outputs, hidden)
     if settings.memory == "feedforward":
         return FeedForward(inputs, outputs, hidden)
     return DNC(inputs, outputs, settings.heads, rows=settings.memory_rows, hidden=hidden)
@@ -74,6 +76,32 @@ class LSTM(nn.Module):
         """From features [..., inputs] to scores [..., outputs] and the next state."""
         hidden, cell = self.controller(x, state)
         return self.output(hidden), LSTMState(hidden, cell)
+
+
+class GRUState(NamedTuple):
+    """What a GRU carries from one step to the next."""
+
+    hidden: Tensor
+    """[..., hidden]"""
+
+
+class GRU(nn.Module):
+    """A gated recurrent unit (Cho et al. 2014), PyTorch's, in the place of the controller."""
+
+    def __init__(self, inputs: int, outputs: int, hidden: int) -> None:
+        """Draw the weights."""
+        super().__init__()
+        self.controller = nn.GRUCell(inputs, hidden)
+        self.output = linear(gru_shapes(inputs, outputs, hidden)["output.weight"])
+
+    def blank(self, batch: tuple[int, ...] = ()) -> GRUState:
+        """The state before the first step: zeros."""
+        return GRUState(self.output.weight.new_zeros(*batch, self.controller.hidden_size))
+
+    def step(self, x: Tensor, state: GRUState) -> tuple[Tensor, GRUState]:
+        """From features [..., inputs] to scores [..., outputs] and the next state."""
+        hidden = self.controller(x, state.hidden)
+        return self.output(hidden), GRUState(hidden)
 
 
 class FeedForward(nn.Module):

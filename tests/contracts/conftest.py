@@ -37,7 +37,7 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
         {"checkpoint": "none", "reading": "map", "size": [14, 14]},
     ],
     "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
-    "cnn_memory": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
+    "cnn_memory": [{"checkpoint": "none", "memory": "gru"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
     "walker": [{}],
     "ring_net": [{"checkpoint": "none"}],
 }

@@ -19,6 +19,7 @@ from fogbench.learned.vin import Vin
 HELD = {
     "dnc": {"controller": (256,), "memory": (32 * 8,), "written": (32,), "read": (32,)},
     "lstm": {"controller": (256,), "cell": (256,)},
+    "gru": {"controller": (256,)},
     "feedforward": {},
 }
 """Shapes of what the memories hold with the paper's sizes."""

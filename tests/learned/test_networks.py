@@ -14,7 +14,7 @@ from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS, COMPASS, SIGHT
 from fogbench.learned.macn import Macn
-from fogbench.learned.networks.memory import LSTM, FeedForward, remember
+from fogbench.learned.networks.memory import GRU, LSTM, FeedForward, remember
 from fogbench.learned.networks.network import settled
 from fogbench.learned.policy import Policy
 from fogbench.learned.value_iteration.value_iteration import ValueIteration, plain
@@ -23,6 +23,7 @@ from fogbench.learned.vin import Vin
 NETWORKS: dict[str, Policy] = {
     "macn": Macn(checkpoint="none"),
     "macn lstm": Macn(checkpoint="none", memory="lstm"),
+    "macn gru": Macn(checkpoint="none", memory="gru"),
     "macn feed-forward": Macn(checkpoint="none", memory="feedforward"),
     "macn on the map": Macn(checkpoint="none", reading="map", size=(6, 9), iterations=5),
     "vin": Vin(checkpoint="none", size=(6, 9)),
@@ -91,7 +92,7 @@ def test_who_remembers(name: str) -> None:
     torch.manual_seed(0)
     network, now = policy.network(), seen(policy, 2, 9)
     here, there = (run(network, [seen(policy, 2, seed), now])[1] for seed in (1, 2))
-    remembers = getattr(policy, "memory", "none") in {"dnc", "lstm"}
+    remembers = getattr(policy, "memory", "none") in {"dnc", "lstm", "gru"}
     assert (not torch.equal(here, there)) == remembers
 
 
@@ -144,12 +145,28 @@ def test_cnn_memory_has_four_convolutions_for_the_vi_module() -> None:
     assert [name for name, _ in cnn.memory.named_parameters()] == [name for name, _ in macn.memory.named_parameters()]
 
 
-@pytest.mark.parametrize(("memory", "part"), [("dnc", DNC), ("lstm", LSTM), ("feedforward", FeedForward)])
+@pytest.mark.parametrize(("memory", "part"), [("dnc", DNC), ("lstm", LSTM), ("gru", GRU), ("feedforward", FeedForward)])
 def test_memories_go_by_name(memory: str, part: Callable[..., Any]) -> None:
     """Each memory is what its name says, with the sizes of the settings."""
     made = remember(Macn.model_validate({"checkpoint": "none", "memory": memory, "hidden": 20, "features": 10}))
     assert type(made) is part
     assert made.step(torch.zeros(2, 10), made.blank((2,)))[0].shape == (2, 4)
+
+
+def test_a_gru_by_its_equations() -> None:
+    """Reset, update and candidate as PyTorch documents them, and the scores a linear map of the output."""
+    torch.manual_seed(0)
+    memory = GRU(5, 4, 7)
+    cell, state = memory.controller, memory.blank((2,))
+    for x in torch.randn(6, 2, 5):
+        of_x = (x @ cell.weight_ih.T + cell.bias_ih).chunk(3, 1)
+        of_h = (state.hidden @ cell.weight_hh.T + cell.bias_hh).chunk(3, 1)
+        reset, update = (of_x[k] + of_h[k] for k in range(2))
+        candidate = (of_x[2] + reset.sigmoid() * of_h[2]).tanh()
+        hidden = (1 - update.sigmoid()) * candidate + update.sigmoid() * state.hidden
+        scores, state = memory.step(x, state)
+        assert torch.allclose(state.hidden, hidden, atol=1e-6)
+        assert torch.allclose(scores, memory.output(hidden), atol=1e-6)
 
 
 def test_an_lstm_by_hand() -> None:

@@ -63,7 +63,7 @@ BROKEN = [
     (
         "memory: lstm",
         "memory: lstn",
-        ["3:26  network.macn.memory: got lstn; expected one of dnc, lstm, feedforward. Did you mean lstm?"],
+        ["3:26  network.macn.memory: got lstn; expected one of dnc, lstm, gru, feedforward. Did you mean lstm?"],
     ),
     (
         "memory: lstm",
