@@ -12,6 +12,9 @@ from fogbench.learned.shapes import Shapes, convolution, parts
 SIDE = 3
 """Of the kernels."""
 
+LAST = len(OUTPUTS)
+"""Channels of the last convolution: as many as there are moves, like Q."""
+
 
 class CnnMemory(Remembering):
     """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
@@ -19,18 +22,19 @@ class CnnMemory(Remembering):
     made_of: ClassVar[str] = "fogbench.learned.networks.cnn_memory:CnnMemoryNetwork"
 
     channels: Size = 32
-    """Of the first three convolutions; the last has as many as there are moves, like Q."""
+    """Of the first three convolutions."""
 
     @property
     def planned(self) -> int:
         """Numbers from the last convolution."""
-        return len(OUTPUTS) * prod(self.size)
+        return LAST * prod(self.size)
 
     def shapes(self) -> Shapes:
         """Those of the convolutions before a memory."""
-        return self.remembering_shapes(self.planned) | parts(convolutions=self._convolutions())
+        return self.remembering_shapes(self.planned) | parts(convolutions=convolutions(self.channels))
 
-    def _convolutions(self) -> Shapes:
-        """In a row, each before a layer without weights."""
-        widths = CHANNELS, *[self.channels] * 3, len(OUTPUTS)
-        return parts(**{str(2 * k): convolution(*ends, SIDE) for k, ends in enumerate(pairwise(widths))})
+
+def convolutions(channels: int) -> Shapes:
+    """Four in a row, each before a layer without weights."""
+    widths = CHANNELS, channels, channels, channels, LAST
+    return parts(**{str(2 * k): convolution(*ends, SIDE) for k, ends in enumerate(pairwise(widths))})

@@ -18,15 +18,19 @@ class RememberingNetwork(Network):
     """What is planned, with the sight and the compass as low-level features, into a memory."""
 
     def __init__(self, settings: Remembering, planned: int) -> None:
-        """Draw the weights; `planned` is how many numbers `plan` gives."""
+        """Draw the weights; `planned` is how many numbers `made` gives."""
         super().__init__()
         self.features = linear(settings.remembering_shapes(planned)["features.weight"])
         self.memory = remember(settings)
 
     def see(self, inputs: Inputs) -> Tensor:
         """The features [B, F] of what is seen; they depend on nothing that is remembered."""
-        told = torch.cat([self.plan(inputs), inputs.sight.flatten(1), inputs.compass], 1)
+        told = torch.cat([*self.made(inputs), inputs.sight.flatten(1), inputs.compass], 1)
         return cast(Tensor, self.features(told)).relu()
+
+    def made(self, inputs: Inputs) -> tuple[Tensor, ...]:
+        """What the network makes of what is seen, `planned` numbers [B, any] in all."""
+        return (self.plan(inputs),)
 
     def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
         """One step."""

@@ -22,10 +22,11 @@ from fogbench.learned.vin import Vin
 
 NETWORKS: dict[str, Policy] = {
     "macn": Macn(checkpoint="none"),
-    "macn lstm": Macn(checkpoint="none", memory="lstm"),
+    "macn lstm": Macn(checkpoint="none", memory="lstm", channels=20),
     "macn gru": Macn(checkpoint="none", memory="gru"),
     "macn feed-forward": Macn(checkpoint="none", memory="feedforward"),
-    "macn on the map": Macn(checkpoint="none", reading="map", size=(6, 9), iterations=5),
+    "macn without convolutions": Macn(checkpoint="none", channels=None),
+    "macn on the map": Macn(checkpoint="none", reading="map", size=(6, 9), iterations=5, channels=5),
     "vin": Vin(checkpoint="none", size=(6, 9)),
     "cnn + memory": CnnMemory(checkpoint="none", size=(7, 7), reads=1, writes=2, links=False),
 }
