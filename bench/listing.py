@@ -10,13 +10,13 @@ from rich.table import Table
 from rich.text import Text
 
 from fogbench.bench.reading.tables import LEARNER, agents, families, first_sentence
-from fogbench.bench.shipped import checkpoints, find, folder, recipes
+from fogbench.bench.shipped import checkpoints, find, recipes
 
 
 def show() -> None:
     """Print a table of each, and how to see more."""
     console = Console()
-    console.print(_pages("Scenarios", {str(path.relative_to(folder()).with_suffix("")): path for path in find(None)}))
+    console.print(_pages("Scenarios", {path.stem: path for path in find(None)}))
     console.print(_classes("Map families", families()))
     console.print(_classes("Agents", agents()))
     console.print(_classes("Ways to learn", LEARNER.targets()))

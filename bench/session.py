@@ -41,7 +41,7 @@ OUTDATED = (
 
 HUNG = (
     f"{{agent}} hung in its first {FIRST} episodes of variant {{variant}}, and was not asked for the other {{count}}. "
-    "To go on, mend it, or give it more time by `budget: {{hard_seconds: ...}}`, and run again."
+    "Mend it and run again, or give it more time by `budget: {{hard_seconds: ...}}`, under which all agents play again."
 )
 """What a user is told of episodes that were left out."""
 

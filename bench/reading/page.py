@@ -2,7 +2,7 @@
 
 import re
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, create_model
 
@@ -43,8 +43,12 @@ EPISODES = 1_000_000
 Number = Annotated[float, Field(ge=0, allow_inf_nan=True), BeforeValidator(_infinity)]
 """A number from 0; `.inf` is one."""
 
-Numbers = Annotated[dict[str, dict[str, Number]], Field(default_factory=dict)]
-"""By the agent's label and the variant's name."""
+Percent = Annotated[float, Field(ge=0, le=100)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+N = TypeVar("N")
+By = Annotated[dict[str, dict[str, N]], Field(default_factory=dict)]
+"""Numbers by the agent's label and the variant's name."""
 
 
 class Open(Settings):
@@ -58,14 +62,14 @@ class Published(Settings):
 
     source: str
     """Where they were published."""
-    success: Numbers
+    success: By[Percent]
     """Share of episodes that end at the goal [%]: `{AGENT: {VARIANT: 96.3}}`, as all that follow."""
-    path_ratio: Numbers
+    path_ratio: By[Number]
     """Path length over the optimum's."""
-    reference_ratio: Numbers
+    reference_ratio: By[Number]
     """Path length over that of a reference agent."""
-    test_error: Numbers
-    """Share of wrong decisions."""
+    test_error: By[Share]
+    """Share of wrong decisions, from 0 to 1."""
 
 
 class Page(Settings):

@@ -81,7 +81,8 @@ def path_ratio(table: pd.DataFrame, looks: Looks, reference: str) -> Figure:
     for axes, (metric, other) in zip(panels, metrics.items(), strict=True):
         axes.axhline(1, color="#888888", linewidth=0.8, zorder=1)
         shown = table.loc[table["metric"] == metric, ["low", "value", "high"]].fillna(1)
-        top = max(1.05, min(1.02 * shown["high"].max(), FAR * shown["value"].median()))
+        near = shown["value"] <= FAR * shown["value"].median()
+        top = max(1.05, 1.02 * shown.loc[near, "high"].max())
         axes.set_ylim(min(0.98, 0.98 * shown["low"].min()), top)  # a narrower axis would make much of nothing
         axes.set_ylabel(f"length / {other},\nown successes")
         _point_beyond(axes)

@@ -58,7 +58,7 @@ def misplaced(blocked: Array, start: Cell, goal: Cell, ends: tuple[str, str] = E
     """Which ends of a task are outside of its map [H, W] or on an obstacle."""
     (height, width), lines = blocked.shape, list[str]()
     for name, (row, column) in zip(ends, (start, goal), strict=True):
-        place, rows = f"{name} [{row}, {column}]", f"a row below {height} and a column below {width}"
+        place, rows = f"{name} [{row}, {column}]", f"a row from 0 to {height - 1} and a column from 0 to {width - 1}"
         if not (0 <= row < height and 0 <= column < width):
             lines.append(f"{place}: got a cell outside of the map; expected {rows}")
         elif not passable(blocked, row, column):

@@ -250,8 +250,9 @@ BROKEN = [
         "esy: 96.3",
         ["21:20  published.success.MACN: got esy; expected one of easy, hard. Did you mean easy?"],
     ),
-    ("easy: 96.3", "easy: most", ["21:26  published.success.MACN.easy: got most; expected a number of at least 0."]),
-    ("easy: 96.3", "easy: .nan", ["21:26  published.success.MACN.easy: got .nan; expected a number of at least 0."]),
+    ("easy: 96.3", "easy: most", ["21:26  published.success.MACN.easy: got most; expected a number from 0 to 100."]),
+    ("easy: 96.3", "easy: .nan", ["21:26  published.success.MACN.easy: got .nan; expected a number from 0 to 100."]),
+    ("easy: 96.3", "easy: 130", ["21:26  published.success.MACN.easy: got 130; expected a number from 0 to 100."]),
     (
         "  success:",
         "  sucess:",

@@ -125,7 +125,7 @@ def test_both_ends_of_a_fixed_task_are_told(tmp_path: Path) -> None:
     family(tmp_path)
     with pytest.raises(MapError) as error:
         MovingAI(map=tmp_path / "x.map", start=(9, 0), goal=(0, 99)).sample(RNG, 0, conditions(1, 100))
-    expected = "got a cell outside of the map; expected a row below 2 and a column below 30"
+    expected = "got a cell outside of the map; expected a row from 0 to 1 and a column from 0 to 29"
     assert str(error.value).splitlines() == [
         f"{tmp_path}/x.map: start [9, 0]: {expected}",
         f"{tmp_path}/x.map: goal [0, 99]: {expected}",
@@ -200,7 +200,7 @@ def test_a_fixed_task_is_that_of_every_episode(tmp_path: Path) -> None:
         (
             (0, 0),
             (2, 0),
-            "goal [2, 0]: got a cell outside of the map; expected a row below 2 and a column below 30",
+            "goal [2, 0]: got a cell outside of the map; expected a row from 0 to 1 and a column from 0 to 29",
         ),
         ((0, 0), (0, 0), "goal [0, 0]: got the cell of the start; expected another one"),
         (

@@ -179,13 +179,17 @@ def test_a_fixed_task_in_metres(
     ("start", "goal", "text"),
     [
         ((1, 1), (0, 0), "start [1, 1]: got an obstacle; expected a free cell"),
-        ((0, 0), (0, 5), "goal [0, 5]: got a cell outside of the map; expected a row below 4 and a column below 5"),
+        (
+            (0, 0),
+            (0, 5),
+            "goal [0, 5]: got a cell outside of the map; expected a row from 0 to 3 and a column from 0 to 4",
+        ),
         (
             (0, 0),
             {"x": 1e6, "y": -1e6},
             (
                 "goal {x: 1e+06, y: -1e+06}, cell [10000004, 9999999]: got a cell outside of the map; "
-                "expected a row below 4 and a column below 5"
+                "expected a row from 0 to 3 and a column from 0 to 4"
             ),
         ),
         (
