@@ -1,6 +1,7 @@
 """Right and wrong on a grid: every move that begins a shortest path on the agent's own known map is right."""
 
 from fogbench.planners.astar import AStarAgent
+from fogbench.planners.grid_teachers import GridTeachers
 from fogbench.planners.judging import Verdict
 from fogbench.planners.optimal import OptimalMoves
 from fogbench.worlds.grid.world import GridWorld, to_goal
@@ -30,6 +31,11 @@ class GridJudge:
     def hindsight(cls, world: GridWorld) -> "Hindsight":
         """One that also knows the world."""
         return Hindsight(world)
+
+    @classmethod
+    def side_by_side(cls, slots: int, *, hindsight: bool) -> GridTeachers:
+        """Teachers of so many episodes."""
+        return GridTeachers(slots, hindsight=hindsight)
 
     def see(self, observation: Observation) -> None:
         """Write what the agent sees into the known map."""

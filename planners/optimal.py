@@ -27,12 +27,19 @@ class OptimalMoves:
 
     def moves(self, place: Cell) -> Array:
         """The optimal moves from a cell: [4] bool; none where no path leads to the goal, or none is needed."""
-        if self.distance[place] > self.settled:
-            self.distance = distances(self.known == BLOCKED, self.goal, place)
-            self.settled = int(self.distance[place])
-        if self.known[self.goal] == BLOCKED:
-            return np.zeros(len(DELTAS), np.bool_)
-        return nearer(self.distance, place)
+        self.settled, moves = optimal(self.known, self.goal, place, self.distance, self.settled)
+        return moves
+
+
+@kernel
+def optimal(known: Array, goal: Cell, place: Cell, distance: Array, settled: int) -> tuple[int, Array]:
+    """The optimal moves from a cell: [4] bool; before them, up to where `distance` is settled after that."""
+    if distance[place] > settled:
+        distance[:] = distances(known == BLOCKED, goal, place)
+        settled = distance[place]
+    if known[goal] == BLOCKED:
+        return settled, np.zeros(len(DELTAS), np.bool_)
+    return settled, nearer(distance, place)
 
 
 @kernel

@@ -5,10 +5,10 @@ from typing import Protocol
 
 import numpy as np
 
+from fogbench.learned.encoding.grid_batch import GridViewpoints
 from fogbench.learned.encoding.grid_inputs import STILL, Inputs, Known, encode
-from fogbench.learned.encoding.grid_sizes import OUTPUTS, SIGHT, Frame, by
+from fogbench.learned.encoding.grid_sizes import OUTPUTS, SIGHT, Frame
 from fogbench.worlds.maps.cells import KnownMap
-from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell, Move, Observation, Task
 
 BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
@@ -72,9 +72,12 @@ class GridEncoding:
         Raises:
             Mistake: a network that was made for maps of one size meets another.
         """
-        if not self.frame.fits(task.extent):
-            raise Mistake(f"got a map of {by(task.extent)}; expected {by(self.frame.shape)}, the size")
+        self.frame.check(task.extent)
         return GridViewpoint(task, self.stitched)
+
+    def side_by_side(self, slots: int) -> GridViewpoints:
+        """Viewpoints of so many episodes."""
+        return GridViewpoints(slots, self.frame, stitched=self.stitched)
 
     def encode(self, viewpoints: Sequence[GridViewpoint]) -> Inputs:
         """What a network sees from some viewpoints."""

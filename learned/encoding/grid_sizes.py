@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from fogbench.worlds.mistake import Mistake
+
 CHANNELS = 3
 """Of an image: free, blocked, goal; a cell that is neither free nor blocked is unknown."""
 
@@ -30,6 +32,15 @@ class Frame(NamedTuple):
     """Rows and columns of the image."""
     centred: bool
     """Whether the agent is in its middle (`window`); else it is the whole map, from its first cell on (`map`)."""
+
+    def check(self, extent: tuple[float, ...]) -> None:
+        """Hold it against the extent of a map.
+
+        Raises:
+            Mistake: a network that was made for maps of one size meets another.
+        """
+        if not self.fits(extent):
+            raise Mistake(f"got a map of {by(extent)}; expected {by(self.shape)}, the size")
 
     def fits(self, extent: tuple[float, ...] | None) -> bool:
         """Whether it can show maps of some extent; of maps that differ that is not known yet."""

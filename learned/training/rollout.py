@@ -1,7 +1,8 @@
 """Episodes side by side: each in a world of its own, with one network for all of them.
 
-Worlds, teachers and what a network sees are those of single episodes. A rollout keeps the way back to the weights,
-unless PyTorch is told not to, so that what was played is learned from as it is.
+Worlds, teachers and what a network sees are those of single episodes, in one call for all where their kind allows it. A
+rollout keeps the way back to the weights, unless PyTorch is told not to, so that what was played is learned from as it
+is.
 
 Words used here
     B   episodes;  b  those of them that go on
@@ -16,11 +17,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.encoding import Viewpoint
+from fogbench.learned.encoding.encoding import viewpoints_of
 from fogbench.learned.networks.network import Network, rows
 from fogbench.learned.policy import Policy
-from fogbench.planners.judging import Teacher
-from fogbench.worlds.mistake import Mistake
+from fogbench.planners.judging import Teachers
+from fogbench.worlds.batch import Luck, batch_of
 from fogbench.worlds.types import Array, World
 
 
@@ -68,66 +69,55 @@ class Rollout(NamedTuple):
         return self.judged & ~right
 
 
-class Run:
-    """One world, and who teaches there."""
+class Drawn(NamedTuple):
+    """A world to play in."""
 
-    def __init__(self, world: World, luck: np.random.Generator, teacher: Teacher | None) -> None:
-        """Before the first step; `luck` is for the sensor and the slip. Without a teacher nothing is right."""
-        self.world = world
-        self.luck = luck
-        self.teacher = teacher
-        self.state = world.reset()
-        self.steps = 0
-        self.reached = False
-
-    def look(self, viewpoint: Viewpoint, outputs: int) -> Array:
-        """Sense, and let the viewpoint and the teacher see: which of the outputs are right, [A] bool.
-
-        Raises:
-            Mistake: the teacher says something else.
-        """
-        observation = self.world.sense(self.state, self.luck)
-        viewpoint.see(observation)
-        if self.teacher is None:
-            return np.zeros(outputs, np.bool_)
-        self.teacher.see(observation)
-        targets: Array = np.asarray(self.teacher.targets())
-        if targets.dtype != np.bool_ or targets.shape != (outputs,):
-            told = f"got targets of {targets.dtype} {list(targets.shape)}; expected bool [{outputs}]"
-            raise Mistake(f"{type(self.teacher).__name__}: {told}, one for each output.")
-        return targets
-
-    def step(self, viewpoint: Viewpoint, output: int) -> bool:
-        """Do what an output means; whether the episode goes on."""
-        step = self.world.step(self.state, viewpoint.act(output), self.luck)
-        self.state, self.reached, self.steps = step.state, step.reached, self.steps + 1
-        return not (step.reached or step.collided or self.steps >= self.world.task.budget.steps)
+    world: World
+    luck: Luck
+    """That of its sensor and of slips."""
 
 
-def roll_out(settings: Policy, network: Network, episodes: Sequence[Run], choose: Chooser) -> Rollout:
-    """Play episodes to their ends.
+def roll_out(
+    settings: Policy, network: Network, drawn: Sequence[Drawn], teachers: Teachers | None, choose: Chooser
+) -> Rollout:
+    """Play episodes to their ends, side by side.
+
+    Args:
+        settings: of the network.
+        network: as it is now.
+        drawn: a world for each episode.
+        teachers: who says what is right, with a slot for each episode; None: nothing is.
+        choose: who decides.
 
     Raises:
-        Mistake: the network is not for such worlds.
+        Mistake: the network is not for such worlds, or a teacher says what none can.
     """
-    encoding = settings.encoding()
-    playing = [(episode, encoding.start(episode.world.task)) for episode in episodes]
-    live, state = np.arange(len(episodes)), network.blank((len(episodes),))
+    worlds, lucks = zip(*drawn, strict=True)
+    encoding, live = settings.encoding(), np.arange(len(drawn))
+    batch, viewpoints = batch_of(worlds), viewpoints_of(encoding, worlds)
+    batch.reset(live, worlds, lucks)
+    viewpoints.reset(live, [world.task for world in worlds])
+    if teachers:
+        teachers.reset(live, worlds)
+    reached, state = np.zeros(len(drawn), np.bool_), network.blank((len(drawn),))
     decisions: list[tuple[Tensor, Tensor, Tensor]] = []
-    while playing:
-        targets = np.stack([run.look(viewpoint, len(encoding.outputs)) for run, viewpoint in playing])  # [b, A]
-        inputs = encoding.encode([viewpoint for _, viewpoint in playing])
+    while len(live):
+        observations = batch.sense(live)
+        viewpoints.see(live, observations)
+        targets = np.zeros((len(live), len(encoding.outputs)), np.bool_)
+        if teachers:
+            teachers.see(live, observations)
+            targets = teachers.targets(live)
+        inputs = viewpoints.encode(live)
         scores, state = network(inputs.to(settings.device), state)
         turn = Turn(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
         outputs = choose(turn)
         decisions.append((scores, torch.from_numpy(targets), torch.from_numpy(outputs)))
-        steps = zip(playing, outputs.tolist(), strict=True)
-        goes_on = np.array([episode.step(viewpoint, output) for (episode, viewpoint), output in steps])
-        if not goes_on.all():
-            live, state = live[goes_on], rows(state, torch.from_numpy(goes_on))
-            playing = [pair for pair, stays in zip(playing, goes_on.tolist(), strict=True) if stays]
+        steps = batch.step(live, viewpoints.act(live, outputs))
+        reached[live] = steps.reached
+        if steps.over.any():
+            live, state = live[~steps.over], rows(state, torch.from_numpy(~steps.over))
     scores, right, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))  # [n, A], [n, A], [n]
-    reached = np.array([episode.reached for episode in episodes])
     return Rollout(scores, right.to(scores.device), done.to(scores.device), reached)
 
 

@@ -16,8 +16,8 @@ from fogbench.learned.training.curriculum import eased
 from fogbench.learned.training.exploring import Explorer, Noisy
 from fogbench.learned.training.imitation import Imitation
 from fogbench.learned.training.recipe import Recipe
-from fogbench.learned.training.rollout import Rollout, Run, roll_out
-from fogbench.learned.training.trials import draw_world, teacher_in
+from fogbench.learned.training.rollout import Drawn, Rollout, roll_out
+from fogbench.learned.training.trials import draw_world, teacher_in, teachers_in
 from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.streams import digest, stream
 
@@ -78,26 +78,25 @@ class Imitator:
 
     def _play(self, done: float) -> Rollout:
         recipe, learning = self.recipe, self.learning
-        episodes = self._episodes(done)
+        drawn = self._drawn(done)
+        teachers = teachers_in(drawn, len(recipe.network.encoding().outputs), hindsight=learning.teacher.hindsight)
         luck = stream(recipe.seed, recipe.lessons[0].worlds.family.words(), "training moves", self.batches)
         network = self.network
         if learning.noise:
             network = Noisy(network, learning.noise, int(digest(recipe.seed, "noise", self.batches)[:8], 16))
         first_share, last_share = learning.teacher.share
         share = first_share + part(done, learning.teacher.until) * (last_share - first_share)
-        return roll_out(recipe.network, network, episodes, Explorer(luck, learning.batch, share))
+        return roll_out(recipe.network, network, drawn, teachers, Explorer(luck, learning.batch, share))
 
-    def _episodes(self, done: float) -> list[Run]:
-        """Those of the batch, of all lessons in turn."""
+    def _drawn(self, done: float) -> list[Drawn]:
+        """The worlds of the batch, of all lessons in turn."""
         learning, first = self.learning, self.batches * self.learning.batch
         grown = part(done, learning.curriculum.until if learning.curriculum else 0.0)
         turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
-        drawn = [
+        return [
             draw_world(*turns[number % len(turns)], "training", self.recipe.seed, number)
             for number in range(first, first + learning.batch)
         ]
-        hindsight = learning.teacher.hindsight
-        return [Run(world, luck, teacher_in(world, hindsight=hindsight)) for world, luck in drawn]
 
 
 def imitation_loss(rollout: Rollout) -> Tensor:

@@ -1,33 +1,44 @@
 """Worlds to learn on and to be tried on, and how a network does in those that were held out."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
 
-import numpy as np
 import torch
 
 from fogbench.learned.networks.network import Network
 from fogbench.learned.training.recipe import Recipe, Worlds
-from fogbench.learned.training.rollout import Run, greedy, roll_out
+from fogbench.learned.training.rollout import Drawn, greedy, roll_out
 from fogbench.planners import JUDGES, judge_of
-from fogbench.planners.judging import Teacher
+from fogbench.planners.judging import Teacher, TeacherByTeacher, Teachers
+from fogbench.worlds.batch import together
 from fogbench.worlds.mistake import Mistake, one_of
 from fogbench.worlds.streams import stream
 from fogbench.worlds.tables import registered
 from fogbench.worlds.types import MapFamily, World
 
 
-class Drawn(NamedTuple):
-    """A world, and the luck in it."""
-
-    world: World
-    luck: np.random.Generator
-
-
 def draw_world(worlds: Worlds, family: MapFamily, purpose: str, seed: int, number: int) -> Drawn:
     """The world of a number on a map of `family`, and the luck in it; another purpose shares nothing with them."""
-    map_luck, luck = (stream(seed, worlds.family.words(), f"{purpose} {what}", number) for what in ("map", "luck"))
-    return Drawn(family.sample(map_luck, number, worlds.conditions), luck)
+    map_luck, luck = (
+        partial(stream, seed, worlds.family.words(), f"{purpose} {what}", number) for what in ("map", "luck")
+    )
+    return Drawn(family.sample(map_luck(), number, worlds.conditions), luck)
+
+
+def teachers_in(drawn: Sequence[Drawn], outputs: int, *, hindsight: bool = False) -> Teachers:
+    """Who says which of so many outputs are right in some worlds, as `teacher_in` has it.
+
+    Raises:
+        Mistake: nobody knows for such a kind of world.
+    """
+    worlds = [world for world, _ in drawn]
+    judge: Any = judge_of(worlds[0].task.kind)
+    if together(*worlds) and "side_by_side" in vars(judge):
+        made: Teachers = judge.side_by_side(len(worlds), hindsight=hindsight)
+        return made
+    return TeacherByTeacher(len(worlds), outputs, partial(teacher_in, hindsight=hindsight))
 
 
 def teacher_in(world: World, *, hindsight: bool = False) -> Teacher:
@@ -74,15 +85,11 @@ def validate(recipe: Recipe, network: Network) -> dict[str, dict[str, float]]:
             draw_world(worlds, worlds.family, "validation", 0, number)  # the same for every seed
             for number in range(recipe.validation.episodes)
         ]
+        judge = judge_of(drawn[0].world.task.kind)
+        teachers = teachers_in(drawn, len(recipe.network.encoding().outputs)) if judge else None
         with torch.no_grad():
-            episodes = [Run(world, luck, _judge(world)) for world, luck in drawn]
-            rollout = roll_out(recipe.network, network, episodes, greedy)
+            rollout = roll_out(recipe.network, network, drawn, teachers, greedy)
         judged = int(rollout.judged.sum())
         wrong = int(rollout.wrong().sum()) / judged if judged else math.nan
         scores[name] = {"success": 100 * float(rollout.reached.mean()), "test_error": wrong}
     return scores
-
-
-def _judge(world: World) -> Teacher | None:
-    """Who counts wrong decisions in a world, if anybody can."""
-    return teacher_in(world) if judge_of(world.task.kind) else None

@@ -7,8 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fogbench.worlds.grid.batch import GridBatch
+from fogbench.worlds.grid.moving import go, slip
 from fogbench.worlds.grid.rules import GridRules, SquareView
-from fogbench.worlds.maps.cells import KnownMap, manhattan, passable
+from fogbench.worlds.maps.cells import KnownMap, manhattan
 from fogbench.worlds.maps.covariates import covariates
 from fogbench.worlds.maps.distances import distances
 from fogbench.worlds.maps.sight import look, misread
@@ -40,6 +42,11 @@ class GridWorld:
     posts: frozenset[Cell]
     """Cells of which one must be visited before the goal counts: in a tunnel, from where its end wall is seen."""
 
+    @classmethod
+    def side_by_side(cls, slots: int) -> GridBatch:
+        """A batch of such worlds."""
+        return GridBatch(slots)
+
     def reset(self) -> GridState:
         """The state before the first decision."""
         return GridState(0, self.start, blocked=False, witnessed=self._witnesses(self.start))
@@ -61,13 +68,11 @@ class GridWorld:
         """
         if type(action) is not Move:
             raise TypeError(f"act returned {action!r} ({type(action).__name__}); expected a Move or None")
-        move, slipped = self._slip(action, rng)
+        move, slipped = slip(self.rules, action, rng)
         place, stopped = state.place, False
         if move is not None:
-            down, right = move.delta
-            ahead = (place[0] + down, place[1] + right)
-            stopped = not passable(self.blocked, *ahead)
-            place = place if stopped else ahead
+            row, column, stopped = go(self.blocked, *place, move.value)
+            place = row, column
         witnessed = state.witnessed or self._witnesses(place)
         length = float(place != state.place)
         collided = stopped and not slipped and self.rules.collision == "fails"
@@ -113,16 +118,6 @@ class GridWorld:
             agent=Squares(np.array([observation.place])),
             goal=Squares(np.array([self.task.goal])),
         )
-
-    def _slip(self, move: Move, rng: np.random.Generator) -> tuple[Move | None, bool]:
-        if not self.rules.slip:
-            return move, False
-        slips, side = rng.random(2)  # always two numbers, so that the stream never shifts
-        if slips >= self.rules.slip:
-            return move, False
-        if self.rules.slip_to == "stay":
-            return None, True
-        return Move((move + (1 if side < 0.5 else 3)) % 4), True
 
     def _witnesses(self, place: Cell) -> bool:
         return not self.posts or place in self.posts

@@ -48,6 +48,16 @@ def fuse(known: Array, view: Array, row: int, column: int) -> Array:
     return touched[:count].copy()
 
 
+def enlarged(maps: Array, extent: tuple[int, int], beyond: int) -> Array:
+    """Maps [B, H, W] on which another of `extent` has room; what is new is `beyond`."""
+    height, width = max(maps.shape[1], extent[0]), max(maps.shape[2], extent[1])
+    if (height, width) == maps.shape[1:]:
+        return maps
+    larger = np.full((len(maps), height, width), beyond, maps.dtype)
+    larger[:, : maps.shape[1], : maps.shape[2]] = maps
+    return larger
+
+
 class KnownMap:
     """The map as far as one agent has seen it."""
 

@@ -1,6 +1,7 @@
 """A batch of episodes, held against the harness that plays them one by one."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import networkx as nx
@@ -13,11 +14,12 @@ from fogbench.learned.agent import PolicyAgent, load, weighted
 from fogbench.learned.cnn_memory import CnnMemory
 from fogbench.learned.macn import Macn
 from fogbench.learned.policy import Policy
-from fogbench.learned.training.rollout import Rollout, Run, Turn, greedy, roll_out
-from fogbench.learned.training.trials import teacher_in
+from fogbench.learned.training.rollout import Drawn, Rollout, Turn, greedy, roll_out
+from fogbench.learned.training.trials import teachers_in
 from fogbench.learned.vin import Vin
 from fogbench.planners.grid_judge import GridJudge
-from fogbench.planners.judging import Verdict
+from fogbench.planners.grid_teachers import GridTeachers
+from fogbench.planners.judging import TeacherByTeacher, Verdict
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.tunnel import Tunnel
@@ -48,22 +50,40 @@ class Seen(NamedTuple):
     move: int
 
 
-class Spy:
-    """Chooses at random, and notes down all that each episode is at each step."""
+class Spy(GridTeachers):
+    """Teaches, chooses at random, and notes down all that each episode is at each step."""
 
-    def __init__(self, episodes: list[Run]) -> None:
+    def __init__(self, slots: int, *, hindsight: bool) -> None:
         """Nothing is noted yet."""
-        self.episodes = episodes
+        super().__init__(slots, hindsight=hindsight)
         self.luck = np.random.default_rng(5)
-        self.seen: list[list[Seen]] = [[] for _ in episodes]
+        self.observations: Any = None
+        self.seen: list[list[Seen]] = [[] for _ in range(slots)]
 
-    def __call__(self, turn: Turn) -> Array:
+    def see(self, slots: Array, observations: Any) -> None:
+        """Keep what is told."""
+        super().see(slots, observations)
+        self.observations = observations
+
+    def choose(self, turn: Turn) -> Array:
         """Random moves."""
         moves = self.luck.integers(4, size=len(turn.episodes))
-        for b, optimal, move in zip(turn.episodes.tolist(), turn.targets, moves.tolist(), strict=True):
-            teacher: Any = self.episodes[b].teacher
-            self.seen[b].append(Seen(teacher.observation, teacher.known.cells.copy(), optimal, move))
+        for k, (b, move) in enumerate(zip(turn.episodes.tolist(), moves.tolist(), strict=True)):
+            height, width = self.extents[b]
+            known = self.known[b, :height, :width].copy()
+            self.seen[b].append(Seen(self.observations[k], known, turn.targets[k], move))
         return moves
+
+    def random(self, turn: Turn) -> Array:
+        """Random moves, of which nothing is noted."""
+        return self.luck.integers(4, size=len(turn.episodes))
+
+
+FIELDS = ("blocked", "start", "task", "rules", "optimum", "posts")
+
+
+class Wind(GridWorld):
+    """A world of another class, which has no batch of its own."""
 
 
 class Noting(GridJudge):
@@ -104,23 +124,22 @@ def luck(number: int) -> np.random.Generator:
     return np.random.default_rng(100 + number)
 
 
-def episodes_in(worlds: list[GridWorld], *, hindsight: bool = False) -> list[Run]:
+def drawn(worlds: list[GridWorld]) -> list[Drawn]:
     """An episode in each world."""
-    return [Run(world, luck(k), teacher_in(world, hindsight=hindsight)) for k, world in enumerate(worlds)]
+    return [Drawn(world, partial(luck, k)) for k, world in enumerate(worlds)]
 
 
 def played(policy: Policy, worlds: list[GridWorld], *, hindsight: bool = False) -> tuple[Rollout, list[list[Seen]]]:
     """A rollout of some worlds at random."""
-    spy = Spy(episodes_in(worlds, hindsight=hindsight))
-    return roll_out(policy, weighted(policy), spy.episodes, spy), spy.seen
+    spy = Spy(len(worlds), hindsight=hindsight)
+    return roll_out(policy, weighted(policy), drawn(worlds), spy, spy.choose), spy.seen
 
 
 def first_look(world: GridWorld, *, hindsight: bool) -> list[str]:
     """The moves that count at the start."""
-    (episode,) = episodes_in([world], hindsight=hindsight)
-    encoding = POLICIES[0].encoding()
-    targets = episode.look(encoding.start(world.task), len(encoding.outputs))
-    return [Move(move).name for move in np.flatnonzero(targets)]
+    teacher = GridJudge.hindsight(world) if hindsight else GridJudge(world.task)
+    teacher.see(world.sense(world.reset(), luck(0)))
+    return [Move(move).name for move in np.flatnonzero(teacher.targets())]
 
 
 def test_hindsight_takes_the_better_of_equals(draw: Callable[..., GridWorld]) -> None:
@@ -192,7 +211,7 @@ def test_a_greedy_batch_decides_as_the_policy_does(
     worlds = worlds_of(conditions, rules)
     network = in_double(load(policy).requires_grad_(requires_grad=False).double())
     monkeypatch.setattr("fogbench.learned.agent.weighted", lambda _: network)
-    rollout = roll_out(policy, network, episodes_in(worlds), greedy)
+    rollout = roll_out(policy, network, drawn(worlds), teachers_in(drawn(worlds), 4), greedy)
     judged = wrong = steps = 0
     for k, world in enumerate(worlds):
         record = loop.Record()
@@ -210,12 +229,12 @@ def test_the_gradient_of_a_batch_is_that_of_its_episodes(conditions: Callable[..
     network = load(policy).double()
 
     def gradient(numbers: list[int]) -> list[torch.Tensor]:
-        episodes = [Run(worlds[k], luck(k), teacher_in(worlds[k])) for k in numbers]
+        episodes = drawn([worlds[k] for k in numbers])
 
         def down_and_up(turn: Turn) -> Array:
             return np.full(len(turn.episodes), 2 * (turn.step % 2))
 
-        scores = roll_out(policy, in_double(network), episodes, down_and_up).scores
+        scores = roll_out(policy, in_double(network), episodes, None, down_and_up).scores
         network.zero_grad()
         scores.square().sum().backward()
         return [torch.zeros_like(p) if p.grad is None else p.grad.clone() for p in network.parameters()]
@@ -236,9 +255,27 @@ def in_double(network: Any) -> Any:
     return step
 
 
+@pytest.mark.parametrize("rules", RULES, ids=["exact", "noisy", "occluded"])
+@pytest.mark.parametrize("policy", POLICIES, ids=lambda policy: f"{type(policy).__name__} {policy.size}")
+@pytest.mark.parametrize("hindsight", [False, True])
+def test_a_batch_is_what_comes_of_one_after_the_other(
+    conditions: Callable[..., Any], policy: Policy, rules: dict[str, Any], hindsight: bool
+) -> None:
+    """Worlds, teachers and viewpoints that are not faster together give the same rollout, bit for bit."""
+    worlds = worlds_of(conditions, rules)
+    apart = [Wind(**{name: getattr(world, name) for name in FIELDS}) for world in worlds]
+    rollouts = []
+    for places, kind in ((worlds, GridTeachers), (apart, TeacherByTeacher)):
+        teachers = teachers_in(drawn(places), 4, hindsight=hindsight)
+        assert type(teachers) is kind
+        rollouts.append(roll_out(policy, weighted(policy), drawn(places), teachers, Spy(0, hindsight=False).random))
+    for together, alone in zip(*rollouts, strict=True):
+        assert np.array_equal(together, alone)
+
+
 def test_a_map_of_another_size_is_refused(conditions: Callable[..., Any]) -> None:
     """A network for whole maps of one size does not start on another, as in a single episode."""
     policy = Macn(**{**SMALL, "size": (8, 8)}, reading="map", memory="feedforward")
-    episodes = episodes_in(worlds_of(conditions, RULES[0], 2))
+    episodes = drawn(worlds_of(conditions, RULES[0], 2))
     with pytest.raises(Mistake, match=r"^got a map of \d+x\d+; expected 8x8, the size$"):
-        roll_out(policy, weighted(policy), episodes, greedy)
+        roll_out(policy, weighted(policy), episodes, None, greedy)

@@ -17,11 +17,10 @@ from fogbench.learned.macn import Macn
 from fogbench.learned.training.exploring import Explorer, Noisy, pick
 from fogbench.learned.training.imitation import Curriculum, Imitation, Teacher
 from fogbench.learned.training.recipe import Lesson, Recipe, Validation, Worlds
-from fogbench.learned.training.rollout import Rollout, Run, Turn, roll_out
+from fogbench.learned.training.rollout import Drawn, Rollout, Turn, roll_out
 from fogbench.learned.training.student import access_weight, imitation_loss, part, rate
 from fogbench.learned.training.trials import draw_world, refuse_unplayable
 from fogbench.learned.training.trials import validate as tried
-from fogbench.planners.grid_judge import GridJudge, Hindsight
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.movingai import MovingAI
 from fogbench.worlds.mistake import Mistake
@@ -164,7 +163,7 @@ def test_trainings_and_trials_share_no_maps(recipe: Callable[..., Recipe]) -> No
     maps = [[cast(Any, world).blocked for world, _ in pairs] for pairs in drawn]
     assert not all(np.array_equal(a, b) for a, b in zip(maps[0], maps[1], strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(maps[0], maps[2], strict=True))
-    chances = [[luck.random() for _, luck in pairs] for pairs in drawn]
+    chances = [[luck().random() for _, luck in pairs] for pairs in drawn]
     assert chances[0] == chances[2] != chances[1]
 
 
@@ -208,10 +207,10 @@ def test_the_teacher_and_the_rate_give_way_over_the_batches(
 
 def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch) -> None:
     """A recipe with it learns from other episodes than one without, and is tried on the same."""
-    kinds = list[set[type]]()
+    late = list[bool]()
 
     def spy(*arguments: Any) -> Rollout:
-        kinds.append({type(episode.teacher) for episode in arguments[2]})
+        late.append(len(arguments[3].full) > 0)
         return roll_out(*arguments)
 
     monkeypatch.setattr("fogbench.learned.training.student.roll_out", spy)
@@ -220,7 +219,7 @@ def test_hindsight_teaches_but_does_not_judge(recipe: Callable[..., Recipe], mon
         taught = recipe(batches=1, teacher=Teacher(hindsight=hindsight))
         learns(taught).learn()
         tried(taught, SMALL.network())
-    assert kinds == [{GridJudge}, {GridJudge}, {Hindsight}, {GridJudge}]
+    assert late == [False, False, True, False]
 
 
 @pytest.mark.parametrize(("name", "kind"), [("adam", torch.optim.Adam), ("rmsprop", torch.optim.RMSprop)])
@@ -297,9 +296,9 @@ def test_a_curriculum_is_played_from_its_beginning(
     made = recipe(batches=4, curriculum=Curriculum(easy={}, until=0.5))
     student, walls = learns(replace(made, lessons=(made.lessons[0]._replace(easy=easy),))), list[float]()
 
-    def rolled(settings: Any, network: Any, episodes: list[Run], choose: Any) -> Rollout:
-        walls.append(float(np.mean([cast(Any, episode.world).blocked.mean() for episode in episodes])))
-        return roll_out(settings, network, episodes, choose)
+    def rolled(settings: Any, network: Any, drawn: list[Drawn], *others: Any) -> Rollout:
+        walls.append(float(np.mean([cast(Any, world).blocked.mean() for world, _ in drawn])))
+        return roll_out(settings, network, drawn, *others)
 
     monkeypatch.setattr("fogbench.learned.training.student.roll_out", rolled)
     for _ in range(4):
@@ -315,21 +314,20 @@ def test_lessons_take_turns(
     made, wide = recipe(batch=4), Blobs(size=9, obstacles=(9, 9), obstacle_size=(1, 1))
     other = Worlds(wide, conditions(steps=20, radius=3))
     student = learns(replace(made, lessons=(*made.lessons, Lesson(other, wide), *made.lessons)))
-    sizes, budgets, sides = list[int](), list[int](), list[int]()
+    sizes, budgets, radii = list[int](), list[int](), list[int]()
 
-    def rolled(settings: Any, network: Any, episodes: list[Run], choose: Any) -> Rollout:
-        rollout = roll_out(settings, network, episodes, choose)
-        sizes.extend(len(cast(Any, episode.world).blocked) for episode in episodes)
-        budgets.extend(episode.world.task.budget.steps for episode in episodes)
-        sides.extend(len(cast(Any, episode.teacher).observation.view) for episode in episodes)
-        return rollout
+    def rolled(settings: Any, network: Any, drawn: list[Drawn], *others: Any) -> Rollout:
+        sizes.extend(len(cast(Any, world).blocked) for world, _ in drawn)
+        budgets.extend(world.task.budget.steps for world, _ in drawn)
+        radii.extend(world.task.sensor.radius for world, _ in drawn)
+        return roll_out(settings, network, drawn, *others)
 
     monkeypatch.setattr("fogbench.learned.training.student.roll_out", rolled)
     for _ in range(2):
         student.learn()
     assert sizes == [6, 9, 6, 6, 9, 6, 6, 9]
     assert budgets == [12, 20, 12, 12, 20, 12, 12, 20]
-    assert sides == [5, 7, 5, 5, 7, 5, 5, 7]
+    assert radii == [2, 3, 2, 2, 3, 2, 2, 3]
 
 
 def test_a_network_learns(recipe: Callable[..., Recipe]) -> None:
