@@ -66,20 +66,23 @@ class GridBatch:
 
     def reset(self, slots: Array, worlds: "Sequence[GridWorld]", lucks: Sequence[Luck]) -> None:
         """Put fresh episodes into some slots."""
-        extent = tuple(np.max([world.blocked.shape for world in worlds], 0).tolist())
-        self.blocked, self.posts = enlarged(self.blocked, extent, 1), enlarged(self.posts, extent, 0)
+        extents = np.array([world.blocked.shape for world in worlds])
+        height, width = extents.max(0).tolist()
+        self.blocked = enlarged(self.blocked, (height, width), 1)
+        self.posts = enlarged(self.posts, (height, width), 0)
+        self.blocked[slots], self.posts[slots] = True, False
+        self.steps[slots], self.stopped[slots] = 0, False
+        self.places[slots] = [world.start for world in worlds]
+        self.goals[slots] = [world.task.goal for world in worlds]
+        self.budgets[slots] = [world.task.budget.steps for world in worlds]
         for slot, world, luck in zip(slots.tolist(), worlds, lucks, strict=True):
             self._put(slot, world, luck)
-        self.steps[slots], self.stopped[slots] = 0, False
 
     def _put(self, slot: int, world: "GridWorld", luck: Luck) -> None:
         sensor, rules, (height, width) = world.task.sensor, world.rules, world.blocked.shape
-        self.blocked[slot] = True
         self.blocked[slot, :height, :width] = world.blocked
-        self.posts[slot] = False
         for post in world.posts:
             self.posts[(slot, *post)] = True
-        self.places[slot], self.goals[slot], self.budgets[slot] = world.start, world.task.goal, world.task.budget.steps
         self.radii[slot], self.occluded[slot] = sensor.radius, sensor.occlusion
         self.witnessed[slot], self.fails[slot] = world.reset().witnessed, rules.collision == "fails"
         self.false_readings[slot], self.slip[slot] = sensor.false_readings, rules.slip

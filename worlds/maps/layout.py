@@ -100,7 +100,7 @@ def fit(layout: Layout, conditions: CellConditions, rng: np.random.Generator) ->
     free = np.flatnonzero(~layout.blocked)  # [n]
     width = layout.blocked.shape[1]
     for _ in range(PAIRS if len(free) > 1 else 0):
-        a, b = free[rng.integers(len(free), size=2)].tolist()
+        a, b = (int(free[rng.integers(len(free))]) for _ in range(2))  # far quicker than two in one call
         found = conditions.world(layout, divmod(a, width), divmod(b, width))
         if found is not None:
             return found
