@@ -3,15 +3,19 @@
 What cannot play here, since a package is missing, stays where it is: nobody can tell whether it counts.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 
 from fogbench.bench.playing.store import CURRENT, KEYS, OUTDATED, WHO, current, load, new_part, parts, write_table
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Array
+
+Line = tuple[Any, ...]
 
 TOLD = list(dict.fromkeys([*WHO, *KEYS]))
 """The columns that say where a row belongs."""
@@ -29,24 +33,23 @@ def sort_rows(folder: Path, scenario: Scenario) -> None:
     Raises:
         StoreError: a file is broken, or cannot be written.
     """
-    valid, unknown = current(scenario)[KEYS], _skipped(scenario)
-    _move(folder, CURRENT, OUTDATED, lambda rows: ~(_among(rows, valid) | _among(rows, unknown)))
-    _move(folder, OUTDATED, CURRENT, lambda rows: _among(rows, valid))
+    valid, unknown = set(_lines(current(scenario), KEYS)), _skipped(scenario)
+    _move(folder, CURRENT, OUTDATED, lambda rows: ~(_among(rows, KEYS, valid) | _among(rows, KEYS[:2], unknown)))
+    _move(folder, OUTDATED, CURRENT, lambda rows: _among(rows, KEYS, valid))
 
 
-def _skipped(scenario: Scenario) -> pd.DataFrame:
+def _skipped(scenario: Scenario) -> set[Line]:
     """The variants and agents that a package is missing for."""
-    agents = [(variant.name, entry.label) for variant in scenario.variants for entry in variant.agents if entry.skipped]
-    return pd.DataFrame(agents, columns=KEYS[:2])
+    return {(variant.name, entry.label) for variant in scenario.variants for entry in variant.agents if entry.skipped}
 
 
 def _move(folder: Path, source: str, target: str, goes: Callable[[pd.DataFrame], Array]) -> None:
-    there = pd.concat([pd.DataFrame(columns=TOLD), *map(_told, parts(folder, target))])
+    there = {line for part in parts(folder, target) for line in _lines(_told(part), TOLD)}
     for part in parts(folder, source):
         told = _told(part)
         moved = goes(told)  # [n] bool
         if moved.any():
-            rows, new = pq.read_table(part), moved & ~_among(told, there)
+            rows, new = pq.read_table(part), moved & ~_among(told, TOLD, there)
             if new.any():  # not those of a run that was killed here
                 write_table(new_part(folder, target), rows.filter(new))
             if moved.all():
@@ -60,7 +63,11 @@ def _told(part: Path) -> pd.DataFrame:
     return told
 
 
-def _among(rows: pd.DataFrame, listed: pd.DataFrame) -> Array:
-    """Which rows agree with a listed one on all its columns: [n] bool."""
-    names = list(listed.columns)
-    return pd.MultiIndex.from_frame(rows[names]).isin(pd.MultiIndex.from_frame(listed))
+def _lines(rows: pd.DataFrame, names: list[str]) -> Iterator[Line]:
+    """What each row has in some columns."""
+    return zip(*(rows[name] for name in names), strict=True)
+
+
+def _among(rows: pd.DataFrame, names: list[str], listed: set[Line]) -> Array:
+    """Which rows have something listed in some columns: [n] bool."""
+    return np.array([line in listed for line in _lines(rows, names)], np.bool_)
