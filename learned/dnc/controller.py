@@ -11,6 +11,7 @@ Words used here
 from typing import Any
 
 import torch
+from llvmlite.binding import get_host_cpu_name
 from torch import Tensor, nn
 from torch.autograd import Function
 from torch.autograd.function import once_differentiable
@@ -74,13 +75,13 @@ class _Fast(Function):
         return product(d_gates, weight.T), product(d_rows.T, rows.T), d_rows.sum(0), d_cell
 
 
-_ONEDNN = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
+_ONEDNN = getattr(torch.ops.mkldnn, "_linear_pointwise", None) if get_host_cpu_name().startswith("znver") else None
 
 
 def product(x: Tensor, weight: Tensor, bias: Tensor | None = None) -> Tensor:
-    """`linear`, by oneDNN where PyTorch has it: its matrix products know more processors than MKL's.
+    """`linear`, on a processor of AMD by oneDNN, where MKL's matrix products are slow.
 
-    Not for one row, where it is slower, or for none, which it refuses.
+    Not for one row, where oneDNN is slower, or for none, which it refuses.
     """
     if _ONEDNN is None or x.dtype is not torch.float32 or x.numel() in {0, x.shape[-1]}:
         return linear(x, weight, bias)
