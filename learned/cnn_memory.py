@@ -1,16 +1,13 @@
 """Settings of CNN + Memory: a MACN with four convolutions in the place of its VI module (Khan et al. 2018)."""
 
-from itertools import pairwise
 from math import prod
 from typing import ClassVar
 
+from fogbench.learned.convolution.sizes import shapes
 from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
 from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
-from fogbench.learned.shapes import Shapes, convolution, parts
-
-SIDE = 3
-"""Of the kernels."""
+from fogbench.learned.shapes import Shapes, parts
 
 LAST = len(OUTPUTS)
 """Channels of the last convolution: as many as there are moves, like Q."""
@@ -31,10 +28,4 @@ class CnnMemory(Remembering):
 
     def shapes(self) -> Shapes:
         """Those of the convolutions before a memory."""
-        return self.remembering_shapes(self.planned) | parts(convolutions=convolutions(self.channels))
-
-
-def convolutions(channels: int) -> Shapes:
-    """Four in a row, each before a layer without weights."""
-    widths = CHANNELS, channels, channels, channels, LAST
-    return parts(**{str(2 * k): convolution(*ends, SIDE) for k, ends in enumerate(pairwise(widths))})
+        return self.remembering_shapes(self.planned) | parts(convolutions=shapes(CHANNELS, self.channels, LAST))

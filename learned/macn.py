@@ -3,7 +3,8 @@
 from math import prod
 from typing import ClassVar
 
-from fogbench.learned.cnn_memory import LAST, convolutions
+from fogbench.learned.cnn_memory import LAST
+from fogbench.learned.convolution.sizes import shapes as convolutional_shapes
 from fogbench.learned.encoding.grid_sizes import CHANNELS, SIGHT
 from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
@@ -33,6 +34,6 @@ class Macn(Planning, Remembering):
 
     def shapes(self) -> Shapes:
         """Those of a VI module, and of convolutions beside it, before a memory."""
-        beside = parts(convolutions=convolutions(self.channels)) if self.channels else {}
+        beside = parts(convolutions=convolutional_shapes(CHANNELS, self.channels, LAST)) if self.channels else {}
         planner = parts(planner=planner_shapes(CHANNELS))
         return self.remembering_shapes(self.planned + self.convolved) | planner | beside

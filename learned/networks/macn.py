@@ -8,9 +8,11 @@ where they are higher; with them comes Q at the agent's cell.
 import torch
 from torch import Tensor
 
+from fogbench.learned.cnn_memory import LAST
+from fogbench.learned.convolution.convolutions import Convolutions
 from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.macn import Macn
-from fogbench.learned.networks.cnn_memory import Convolutions
 from fogbench.learned.networks.macn_single import Weights, in_lanes, see
 from fogbench.learned.networks.memory import RememberingNetwork
 from fogbench.learned.networks.vin import planner
@@ -23,7 +25,8 @@ class MacnNetwork(RememberingNetwork):
         """Draw the weights."""
         super().__init__(settings, settings.planned + settings.convolved)
         self.planner = planner(settings)
-        self.convolutions = Convolutions(settings.channels) if settings.channels else None
+        channels = settings.channels
+        self.convolutions = Convolutions(CHANNELS, channels, LAST) if channels else None
         self.settled: Weights | None = None
 
     @torch.no_grad()

@@ -11,7 +11,7 @@ from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.dnc.heads import Heads, controller_shapes, shapes
 
-HEADS = [Heads(), Heads(2, 3, 5), Heads(2, 3, 5, links=False), Heads(1, 1, 1)]
+HEADS = [Heads(), Heads(2, 3, 5), Heads(2, 3, 5, links=False), Heads(1, 1, 1), Heads(2, 3, 5, kept=4)]
 
 
 @pytest.mark.parametrize("heads", HEADS)
@@ -35,7 +35,7 @@ def test_the_paper_s_interface() -> None:
     assert [heads.interface for heads in sizes] == [79, 40, 127, 26_812]
 
 
-@pytest.mark.parametrize("module", ["dnc.heads", "value_iteration.sizes"])
+@pytest.mark.parametrize("module", ["dnc.heads", "value_iteration.sizes", "convolution.sizes"])
 def test_sizes_need_no_pytorch(module: str) -> None:
     """Who only asks how large weights are does not load it."""
     script = f"import sys, fogbench.learned.{module}; assert 'torch' not in sys.modules"

@@ -1,0 +1,1 @@
+"""Four convolutions in a row: as PyTorch has them, and for batches on a CPU."""
