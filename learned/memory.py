@@ -18,6 +18,10 @@ HeadCount = Annotated[int, Field(ge=1, le=64)]
 """Of one sort; each write head has links from every row to every other."""
 
 
+Links = Annotated[int, Field(ge=1, le=1024)]
+"""Of a row."""
+
+
 class Remembering(GridPolicy):
     """A policy with a memory between what it sees and what it does."""
 
@@ -35,13 +39,14 @@ class Remembering(GridPolicy):
     """Read heads of a DNC."""
     writes: HeadCount = 1
     """Write heads of a DNC."""
-    links: bool = True
-    """Whether a DNC keeps temporal links."""
+    links: bool | Links = True
+    """Whether a DNC keeps temporal links; a number: of each row so many, the strongest (Rae et al. 2016)."""
 
     @property
     def heads(self) -> Heads:
         """The sizes of a DNC's memory but for its rows."""
-        return Heads(self.reads, self.writes, self.word, self.links)
+        kept = 0 if isinstance(self.links, bool) else self.links
+        return Heads(self.reads, self.writes, self.word, bool(self.links), kept)
 
     def idle(self) -> frozenset[str]:
         """Those of a DNC's memory, without one."""

@@ -8,6 +8,7 @@ Words used here
     N     memory rows
     D     numbers in a row, the memory's word
     K     heads with temporal links: W, or 0 without links, which leaves one read mode
+    S     links that a row keeps, the strongest, where it does not keep all (Rae et al. 2016)
     ...   a batch [B], or nothing for a single sample
 
 All arrays of rows have the rows last, the memory too: [..., D, N].
@@ -40,7 +41,10 @@ class AccessState(NamedTuple, Generic[T]):
     usage: T
     """[..., N]"""
     links: T
-    """[..., K, N, N], at (n, m) how far row n was written next after row m."""
+    """[..., K, N, N], at (n, m) how far row n was written next after row m.
+
+    Or [..., K, 2 * S, N], of each row n its S strongest links, and after them the rows m that they lead to.
+    """
     precedence: T
     """[..., K, N], how far a row was the last one written."""
 
@@ -91,8 +95,13 @@ def controls(heads: Heads, interface: Tensor) -> Controls:
     )  # fmt: skip
 
 
-def access(controls: Controls, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
+def access(controls: Controls, state: AccessState[Tensor], strongest: int = 0) -> tuple[Tensor, AccessState[Tensor]]:
     """One step: free and count usage, write, link, read.
+
+    Args:
+        controls: what the controller tells.
+        state: the state before.
+        strongest: S; 0: all links are kept.
 
     Returns:
         What was read [..., R, D], and the state after it.
@@ -100,10 +109,12 @@ def access(controls: Controls, state: AccessState[Tensor]) -> tuple[Tensor, Acce
     used = usage(controls, state)
     write_weights = written(controls, state.memory, used)
     memory = write(controls, state.memory, write_weights)
-    links, precedence = link(state.links, state.precedence, write_weights)
-    read_weights = read(controls, memory, links, state.read_weights)
+    before = spread(state.links) if strongest else state.links
+    links, precedence = link(before, state.precedence, write_weights)
+    kept = keep(links, strongest) if strongest else links
+    read_weights = read(controls, memory, spread(kept) if strongest else links, state.read_weights)
     reads = read_weights @ memory.mT  # [..., R, D]
-    return reads, AccessState(memory, read_weights, write_weights, used, links, precedence)
+    return reads, AccessState(memory, read_weights, write_weights, used, kept, precedence)
 
 
 def usage(controls: Controls, state: AccessState[Tensor]) -> Tensor:
@@ -153,6 +164,18 @@ def link(links: Tensor, precedence: Tensor, weights: Tensor) -> tuple[Tensor, Te
     linked = (1 - to - of) * links + to * precedence[..., None, :]
     others = 1 - torch.eye(links.shape[-1], dtype=links.dtype, device=links.device)
     return linked * others, (1 - weights.sum(-1, keepdim=True)) * precedence + weights
+
+
+def keep(links: Tensor, strongest: int) -> Tensor:
+    """Of links [..., K, N, N] the strongest of each row, of equal ones the first: [..., K, 2 * S, N]."""
+    ordered, order = links.sort(dim=-1, descending=True, stable=True)
+    return torch.cat([ordered[..., :strongest], order[..., :strongest].to(links.dtype)], -1).mT
+
+
+def spread(kept: Tensor) -> Tensor:
+    """Undo `keep`; links that were not kept are zero."""
+    links, columns = kept.mT.chunk(2, -1)  # [..., K, N, S]
+    return links.new_zeros(*links.shape[:-1], links.shape[-2]).scatter_add(-1, columns.long(), links)
 
 
 def read(controls: Controls, memory: Tensor, links: Tensor, before: Tensor) -> Tensor:

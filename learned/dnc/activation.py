@@ -11,7 +11,7 @@ from fogbench.worlds.types import Array
 @kernel
 def activate(sizes: Sizes, interface: Array, write_heads: Array, read_heads: Array) -> None:
     """Heads get their controls: strengths by softplus, gates and erase vectors by sigmoid, modes by softmax."""
-    word, _, readers, writers, _, alone = sizes
+    word, _, readers, writers, _, alone, _ = sizes
     lay(interface[:, : len(write_heads)], write_heads, alone)
     lay(interface[:, len(write_heads) :], read_heads, alone)
     size = head_size(write_heads, writers)
@@ -33,7 +33,7 @@ def activate_back(
     sizes: Sizes, write_heads: Array, read_heads: Array, d_write_heads: Array, d_read_heads: Array, d_interface: Array
 ) -> None:
     """Back through `activate`."""
-    word, _, readers, writers, _, alone = sizes
+    word, _, readers, writers, _, alone, _ = sizes
     size = head_size(write_heads, writers)
     for i in range(writers):
         head, d_head = write_heads[i * size : (i + 1) * size], d_write_heads[i * size : (i + 1) * size]

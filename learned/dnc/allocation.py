@@ -17,7 +17,7 @@ from fogbench.worlds.types import Array
 @fused
 def use(sizes: Sizes, read_heads: Array, old: AccessState[Array], usage: Array) -> None:
     """Rows written before are used, rows read before and freed are not."""
-    word, rows, readers, writers, _, _ = sizes
+    word, rows, readers, writers, _, _, _ = sizes
     size = head_size(read_heads, readers)
     for n in range(rows):
         unused = 1 - at(old.usage, n)
@@ -35,7 +35,7 @@ def use_back(
     d_old_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `use`, which takes past write weightings as given; adds to `d_before`."""
-    word, rows, readers, writers, _, _ = sizes
+    word, rows, readers, writers, _, _, _ = sizes
     size = head_size(heads, readers)
     for n in range(rows):
         unwritten = full(heads, 1)
@@ -58,7 +58,7 @@ def use_back(
 @fused
 def allocate(sizes: Sizes, heads: Array, usage: Array, similar: Array, before: Array, weights: Array) -> None:
     """The write weightings; a head sees as used what the heads before it are allocated."""
-    _, rows, _, writers, _, alone = sizes
+    _, rows, _, writers, _, alone, _ = sizes
     size, used = head_size(heads, writers), unfilled(rows, usage)
     for n in range(rows):
         put(used, n, raised(at(usage, n)))
@@ -78,7 +78,7 @@ def allocate_back(
     d_heads: Array, d_similar: Array, d_usage: Array,
 ) -> None:  # fmt: skip
     """Back through `allocate`, from the last head to the first; adds to `d_usage`."""
-    _, rows, _, writers, _, alone = sizes
+    _, rows, _, writers, _, alone, _ = sizes
     size, used, d_used = head_size(heads, writers), unfilled(writers * rows, usage), zeros(usage)
     d_free = unfilled(rows, usage)
     for n in range(rows):

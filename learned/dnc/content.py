@@ -16,7 +16,7 @@ from fogbench.worlds.types import Array
 @fused
 def address(sizes: Sizes, count: int, heads: Array, memory: Array, lengths: Array, similar: Array) -> None:
     """The weightings by cosine similarity of keys and rows, and the rows' lengths."""
-    word, rows, _, _, _, alone = sizes
+    word, rows, _, _, _, alone, _ = sizes
     size = head_size(heads, count)
     for n in range(rows):
         put(lengths, n, length(memory[n:], word, rows))
@@ -36,7 +36,7 @@ def address_back(
     d_heads: Array, d_memory: Array,
 ) -> None:  # fmt: skip
     """Back through `address`; uses `d_similar` up, adds to `d_memory` and to the keys of `d_heads`."""
-    word, rows, _, _, _, alone = sizes
+    word, rows, _, _, _, alone, _ = sizes
     size = head_size(heads, count)
     for i in range(count):
         head, d_head = heads[i * size : (i + 1) * size], d_heads[i * size : (i + 1) * size]

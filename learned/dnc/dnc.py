@@ -97,7 +97,7 @@ class DNC(nn.Module):
         """The memory access for an interface vector [..., I]."""
         if self.fast and interface.is_cpu:
             return fast_access(self.heads, interface, state, self.keep_links_every)
-        return access(controls(self.heads, interface), state)
+        return access(controls(self.heads, interface), state, self.heads.strongest(state.usage.shape[-1]))
 
     def forward(self, sequence: Tensor, state: DNCState | None = None) -> tuple[Tensor, DNCState]:
         """Steps through `sequence` [B, T, inputs] or [T, inputs], from a blank state if none is given.

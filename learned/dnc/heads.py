@@ -13,6 +13,8 @@ class Heads(NamedTuple):
     writes: int = 1
     word: int = 8
     links: bool = True
+    kept: int = 0
+    """Links of a row that are kept, the strongest (Rae et al. 2016); 0: all."""
 
     @property
     def linked(self) -> int:
@@ -34,10 +36,16 @@ class Heads(NamedTuple):
         """How many numbers that are."""
         return sum(map(prod, self.interface_shapes))
 
-    def state_shapes(self, rows: int) -> tuple[Shape, ...]:
-        """What a sample's state has, in the order of `AccessState`."""
-        read, write, linked = (self.reads, rows), (self.writes, rows), (self.linked, rows)
-        return (self.word, rows), read, write, (rows,), (*linked, rows), linked
+    def state_shapes(self, rows: int, room: int = 0) -> tuple[Shape, ...]:
+        """What a sample's state has, in the order of `AccessState`, or what `room` for more rows has."""
+        whole = room or rows
+        read, write, linked = (self.reads, whole), (self.writes, whole), (self.linked, whole)
+        links = self.linked, 2 * self.strongest(rows) or whole, whole
+        return (self.word, whole), read, write, (whole,), links, linked
+
+    def strongest(self, rows: int) -> int:
+        """`S`, how many links each of so many rows keeps; 0: all."""
+        return min(self.kept, rows)
 
 
 def controller_shapes(inputs: int, hidden: int) -> Shapes:

@@ -6,7 +6,7 @@ side, sixteen by sixteen, the last ones unused; then a number that belongs to no
 gradient by it is the sum of all.
 
 Words used here
-    sizes        D, N, R, W, K, and 0; or, of a sample that is alone, N counts sixteen rows as one, and the last is N
+    sizes        D, N, R, W, K, 0 and S; or, of a sample that is alone, N counts sixteen rows as one, and stands for 0
     write_heads  [W * (3 * D + 3)], for each write head key, strength, value, erase vector, allocation gate, write gate
     read_heads   [R * (D + 2 * K + 3)], for each read head key, strength, free gate, modes
     similar      [heads * N], weightings by content
@@ -26,7 +26,7 @@ from fogbench.learned.kernels.native import job, pointer
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 
-Sizes = tuple[int, int, int, int, int, int]
+Sizes = tuple[int, int, int, int, int, int, int]
 
 
 class Tape(NamedTuple, Generic[T]):
@@ -52,7 +52,7 @@ def tape_sizes(heads: Heads, rows: int) -> Tape[int]:
 
 ENDS = tuple(f"{part}_end" for part in (*AccessState._fields, *Tape._fields))
 """Where the parts of a state and of a tape end, each in its buffer, where it follows on the part before."""
-SIZES = "samples", "pitch", "interface_size", "word", "rows", "reads", "writes", "linked", "alone", *ENDS
+SIZES = "samples", "pitch", "interface_size", "word", "rows", "reads", "writes", "linked", "alone", "strongest", *ENDS
 STATES = "old", "old_links", "new", "new_links"
 JOB = job(
     *SIZES, "interface", *STATES, "read", "tape",
@@ -66,7 +66,7 @@ which those by links may be nowhere."""
 @kernel
 def sizes_of(job: Any) -> Sizes:
     """The sizes in a job."""
-    return job.word, job.rows, job.reads, job.writes, job.linked, job.alone
+    return job.word, job.rows, job.reads, job.writes, job.linked, job.alone, job.strongest
 
 
 @kernel

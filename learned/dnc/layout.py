@@ -22,7 +22,7 @@ from fogbench.learned.kernels.room import room
 from fogbench.learned.shapes import Shape
 
 MANY = {True: 80, False: 512}
-"""Rows, with and without links, from which those of one sample fill the lanes better than sixteen samples do."""
+"""Rows, with and without all links, from which those of one sample fill the lanes better than sixteen samples do."""
 
 
 class Buffers(NamedTuple):
@@ -122,7 +122,7 @@ def _buffer(parts: Sequence[Tensor], places: Sequence[View], size: tuple[int, in
 
 def layout(heads: Heads, rows: int, batch: tuple[int, ...]) -> Layout:
     """The layout for batches of one size: sixteen samples side by side, or the many rows of each."""
-    return arranged(heads, rows, batch, 1 if rows < MANY[heads.links] else LANES)
+    return arranged(heads, rows, batch, 1 if rows < MANY[heads.links and not heads.kept] else LANES)
 
 
 @lru_cache
@@ -136,11 +136,12 @@ def arranged(heads: Heads, rows: int, batch: tuple[int, ...], side: int) -> Layo
     blocks = -(-count * side // LANES)
     pitch = LANES if alone else LANES * (blocks | 1) if blocks else 0
     apart, times = (1, count) if alone else (pitch, 1)
-    places, ends, (rest, links) = _places(heads.state_shapes(whole))
+    places, ends, (rest, links) = _places(heads.state_shapes(rows, whole))
     shapes = zip(heads.state_shapes(rows), places, strict=True)
     views = [_view(batch, shape, place, apart, alone) for shape, place in shapes]
     ends = [end // side for end in ends] + list(accumulate(tape_sizes(heads, whole // side)))
-    counts = heads.word, whole // side, heads.reads, heads.writes, heads.linked, rows if alone else 0
+    single = rows if alone else 0
+    counts = heads.word, whole // side, heads.reads, heads.writes, heads.linked, single, heads.strongest(rows)
     reads = *batch, heads.reads, heads.word
     return Layout(
         (count, pitch, heads.interface, *counts, *ends), blocks, (times * rest // side, pitch),

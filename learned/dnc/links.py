@@ -14,8 +14,9 @@ from typing import Any
 
 from fogbench.learned.dnc.access import AccessState
 from fogbench.learned.dnc.job import Sizes, head_size
+from fogbench.learned.dnc.strongest import link_strongest
 from fogbench.learned.kernels.instructions import at, full, put, total
-from fogbench.learned.kernels.lane_arrays import add, clear, over, zeros
+from fogbench.learned.kernels.lane_arrays import add, clear, over, unfilled
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
@@ -24,21 +25,14 @@ from fogbench.worlds.types import Array
 @fused
 def link(sizes: Sizes, heads: Array, old: AccessState[Array], new: AccessState[Array]) -> None:
     """Rows written now follow the rows written last; add what is read along the links to the read weightings."""
-    word, rows, readers, _, linked, alone = sizes
-    size, pitch = head_size(heads, readers), link_rows(sizes)
-    ahead, back = zeros(old.read_weights), zeros(old.read_weights)
+    word, rows, readers, _, linked, alone, _ = sizes
+    size = head_size(heads, readers)
+    ahead, back = unfilled(readers * rows, old.read_weights), unfilled(readers * rows, old.read_weights)
     for i in range(linked):
         w, p = new.write_weights[i * rows : (i + 1) * rows], old.precedence[i * rows :]
+        clear(ahead)
         clear(back)
-        for n in range(0, pitch, 2):
-            first = (i * pitch + n) * rows
-            pair = new.links[first:]
-            if alone:
-                link_pair_alone(n, old.links[first:], w, p, pair)
-                follow_pair_alone(n, pair, old.read_weights, ahead, back, rows)
-            else:
-                link_pair(n, old.links[first:], w, p, pair)
-                follow_pair(n, pair, old.read_weights, ahead, back, rows)
+        link_head(sizes, i, old.links, w, p, old.read_weights, new.links, ahead, back)
         kept = unwritten(w, alone)
         for n in range(rows):
             put(new.precedence, i * rows + n, kept * at(p, n) + at(w, n))
@@ -52,16 +46,33 @@ def link(sizes: Sizes, heads: Array, old: AccessState[Array], new: AccessState[A
 @fused
 def link_again(sizes: Sizes, old: AccessState[Array], new: AccessState[Array]) -> None:
     """The links of `new` alone."""
-    _, rows, _, _, linked, alone = sizes
-    pitch = link_rows(sizes)
+    rows, linked, none = sizes[1], sizes[4], old.read_weights[:0]
     for i in range(linked):
         w, p = new.write_weights[i * rows : (i + 1) * rows], old.precedence[i * rows :]
-        for n in range(0, pitch, 2):
-            first = (i * pitch + n) * rows
-            if alone:
-                link_pair_alone(n, old.links[first:], w, p, new.links[first:])
-            else:
-                link_pair(n, old.links[first:], w, p, new.links[first:])
+        link_head(sizes, i, old.links, w, p, none, new.links, none, none)
+
+
+@fused
+def link_head(
+    sizes: Sizes, i: int, links: Array, w: Array, p: Array, vectors: Array, new_links: Array, ahead: Array, back: Array
+) -> None:
+    """Link the rows of write head `i`, and add what `vectors` give along them to `ahead` and `back`."""
+    rows, alone, strongest = sizes[1], sizes[5], sizes[6]
+    if strongest:
+        own = 2 * strongest * rows
+        some = links[i * own : (i + 1) * own]
+        link_strongest(some, w, p, vectors, alone, new_links[i * own :], ahead, back)
+        return
+    pitch = link_rows(sizes)
+    for n in range(0, pitch, 2):
+        first = (i * pitch + n) * rows
+        pair = new_links[first:]
+        if alone:
+            link_pair_alone(n, links[first:], w, p, pair)
+            follow_pair_alone(n, pair, vectors, ahead, back, rows)
+        else:
+            link_pair(n, links[first:], w, p, pair)
+            follow_pair(n, pair, vectors, ahead, back, rows)
 
 
 @fused

@@ -12,8 +12,9 @@ from fogbench.learned.dnc.links import (
     link_rows,
     unwritten,
 )
+from fogbench.learned.dnc.strongest import link_strongest_back
 from fogbench.learned.kernels.instructions import at, full, put, total
-from fogbench.learned.kernels.lane_arrays import add, clear, over, unfilled, zeros
+from fogbench.learned.kernels.lane_arrays import add, clear, over, unfilled
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
@@ -28,38 +29,59 @@ def links_back(
 
     Where no gradient came by the new links, or nobody asks for that by the old ones, these have no rows.
     """
-    word, rows, readers, _, linked, alone = sizes
-    size, pitch, before = head_size(heads, readers), link_rows(sizes), old.read_weights
-    ahead, back, pair, d_row = zeros(d_read), zeros(d_read), unfilled(2 * rows, d_read), unfilled(rows, d_read)
+    word, rows, readers, _, linked, alone, strongest = sizes
+    size, before = head_size(heads, readers), old.read_weights
+    ahead, back = unfilled(readers * rows, d_read), unfilled(readers * rows, d_read)
+    clear(d_old.links)
     for i in range(linked):
         w, p = weights[i * rows : (i + 1) * rows], old.precedence[i * rows : (i + 1) * rows]
         d_w, d_p, modes = d_weights[i * rows :], d_old.precedence[i * rows :], heads[word + 2 + i :]
         precedence_back(w, p, d_new.precedence[i * rows :], d_w, d_p, alone)
+        clear(ahead)
         clear(back)
-        for n in range(0, pitch, 2):
-            links = old.links[(i * pitch + n) * rows :]
-            if alone:
-                link_pair_alone(n, links, w, p, pair)
-                follow_pair_alone(n, pair, d_read, ahead, back, rows)
-            else:
-                link_pair(n, links, w, p, pair)
-                follow_pair(n, pair, d_read, ahead, back, rows)
-            for k in range(n, min(n + 2, pitch)):
-                first = (i * pitch + k) * rows
-                d_old_row = d_old.links[first:] if len(d_old.links) else d_row[:, :LANES]
-                begin(d_new.links[first:], d_row)
-                if alone:
-                    ask_alone(k, modes, size, linked, before, d_read, d_row)
-                    link_row_back_alone(k, old.links[first:], w, p, d_row, d_old_row, d_w, d_p)
-                else:
-                    ask(k, modes, size, linked, before, d_read, d_row)
-                    link_row_back(k, old.links[first:], w, p, d_row, d_old_row, d_w, d_p)
+        if strongest:
+            own = 2 * strongest * rows
+            link_strongest_back(
+                old.links[i * own : (i + 1) * own], w, p, modes, size, linked, before, d_read, d_new.links[i * own :],
+                alone, ahead, back, d_old.links[i * own :], d_w, d_p,
+            )  # fmt: skip
+        else:
+            link_all_back(sizes, i, old.links, w, p, modes, size, before, d_read, d_new.links, ahead, back,
+                          d_old.links, d_w, d_p)  # fmt: skip
         for j in range(readers):
             mode, first = j * size + word + 2 + i, j * rows
             modes_back(
                 heads[mode:], linked, before[first : first + rows], ahead[first:], back[first:],
                 d_heads[mode:], d_old.read_weights[first:],
             )  # fmt: skip
+
+
+@fused
+def link_all_back(
+    sizes: Sizes, i: int, links: Array, w: Array, p: Array, modes: Array, size: int, before: Array, d_read: Array,
+    d_new_links: Array, ahead: Array, back: Array, d_links: Array, d_w: Array, d_p: Array,
+) -> None:  # fmt: skip
+    """Back through all links of write head `i`; adds to `d_w` and `d_p`."""
+    rows, linked, alone, pitch = sizes[1], sizes[4], sizes[5], link_rows(sizes)
+    pair, d_row = unfilled(2 * rows, d_read), unfilled(rows, d_read)
+    for n in range(0, pitch, 2):
+        own = links[(i * pitch + n) * rows :]
+        if alone:
+            link_pair_alone(n, own, w, p, pair)
+            follow_pair_alone(n, pair, d_read, ahead, back, rows)
+        else:
+            link_pair(n, own, w, p, pair)
+            follow_pair(n, pair, d_read, ahead, back, rows)
+        for k in range(n, min(n + 2, pitch)):
+            first = (i * pitch + k) * rows
+            d_old_row = d_links[first:] if len(d_links) else d_row[:, :LANES]
+            begin(d_new_links[first:], d_row)
+            if alone:
+                ask_alone(k, modes, size, linked, before, d_read, d_row)
+                link_row_back_alone(k, links[first:], w, p, d_row, d_old_row, d_w, d_p)
+            else:
+                ask(k, modes, size, linked, before, d_read, d_row)
+                link_row_back(k, links[first:], w, p, d_row, d_old_row, d_w, d_p)
 
 
 @fused

@@ -13,7 +13,7 @@ from fogbench.worlds.types import Array
 @fused
 def write(sizes: Sizes, heads: Array, memory: Array, weights: Array, new_memory: Array) -> None:
     """All heads erase, then all add."""
-    word, rows, _, writers, _, _ = sizes
+    word, rows, _, writers, _, _, _ = sizes
     size = head_size(heads, writers)
     for d in range(word):
         for n in range(rows):
@@ -31,7 +31,7 @@ def write_back(
     d_weights: Array,
 ) -> None:  # fmt: skip
     """Back through `write`; adds to `d_weights`."""
-    word, rows, _, writers, _, _ = sizes
+    word, rows, _, writers, _, _, _ = sizes
     size = head_size(heads, writers)
     for d in range(word):
         value, erase = word + 1 + d, 2 * word + 1 + d
@@ -54,7 +54,7 @@ def write_back(
 @fused
 def read(sizes: Sizes, memory: Array, weights: Array, reads: Array) -> None:
     """Each read head reads the sum of the rows, times its weights."""
-    word, rows, readers, _, _, alone = sizes
+    word, rows, readers, _, _, alone, _ = sizes
     sums = np.empty((1, LANES), memory.dtype)
     for j in range(readers):
         for d in range(word):
@@ -69,7 +69,7 @@ def read(sizes: Sizes, memory: Array, weights: Array, reads: Array) -> None:
 @fused
 def read_back(sizes: Sizes, memory: Array, weights: Array, d_samples: Array, d_memory: Array, d_weights: Array) -> None:
     """Back through `read`; adds to `d_memory` and `d_weights`."""
-    word, rows, readers, _, _, alone = sizes
+    word, rows, readers, _, _, alone, _ = sizes
     d_reads = np.empty((readers * word, LANES), memory.dtype)
     lay(d_samples, d_reads, alone)
     for j in range(readers):

@@ -55,7 +55,7 @@ def step(
     sizes: Sizes, interface: Array, old: AccessState[Array], new: AccessState[Array], reads: Array, tape: Tape[Array]
 ) -> None:
     """One step of one block."""
-    _, _, readers, writers, _, _ = sizes
+    _, _, readers, writers, _, _, _ = sizes
     activate(sizes, interface, tape.write_heads, tape.read_heads)
     use(sizes, tape.read_heads, old, new.usage)
     address(sizes, writers, tape.write_heads, old.memory, tape.old_lengths, tape.write_similar)
@@ -73,7 +73,7 @@ def step_back(
     d_new: AccessState[Array], d_old: AccessState[Array], d_interface: Array,
 ) -> None:  # fmt: skip
     """Back through one step of one block. The links of `new` are not looked at."""
-    _, _, readers, writers, _, _ = sizes
+    _, _, readers, writers, _, _, _ = sizes
     d_write_heads, d_read_heads = zeros(tape.write_heads), zeros(tape.read_heads)
     d_memory, d_usage = same(d_new.memory), same(d_new.usage)
     d_read, d_write = same(d_new.read_weights), same(d_new.write_weights)

@@ -22,6 +22,7 @@ from fogbench.learned.vin import Vin
 
 NETWORKS: dict[str, Policy] = {
     "macn": Macn(checkpoint="none"),
+    "macn with few links": Macn(checkpoint="none", links=3, channels=8),
     "macn lstm": Macn(checkpoint="none", memory="lstm", channels=20),
     "macn gru": Macn(checkpoint="none", memory="gru"),
     "macn feed-forward": Macn(checkpoint="none", memory="feedforward"),

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from fogbench.learned.dnc.access import AccessState, access, allocation, blank, controls
+from fogbench.learned.dnc.access import AccessState, access, allocation, blank, controls, spread
 from fogbench.learned.dnc.dnc import DNC
 from fogbench.learned.dnc.fast import fast_access
 from fogbench.learned.dnc.heads import Heads
@@ -23,7 +23,7 @@ COUNTS = [1, 2, 4]
 
 def plain(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
     """The plain form, called as the fast one."""
-    return access(controls(heads, interface), state)
+    return access(controls(heads, interface), state, heads.strongest(state.usage.shape[-1]))
 
 
 def many(heads: Heads, interface: Tensor, state: AccessState[Tensor]) -> tuple[Tensor, AccessState[Tensor]]:
@@ -101,6 +101,9 @@ class Loop:
                 for m in range(rows):
                     link = (1 - w[n] - w[m]) * self.links[i, n, m] + w[n] * self.precedence[i, m]
                     self.links[i, n, m] = 0 if n == m else link
+                if self.heads.kept:
+                    weak = np.argsort(-self.links[i, n], kind="stable")[self.heads.kept :]
+                    self.links[i, n, weak] = 0
             self.precedence[i] = (1 - w.sum()) * self.precedence[i] + w
         for j, (key, strength, _, modes) in enumerate(readers):
             before = self.read[j].copy()
@@ -156,13 +159,13 @@ def used(heads: Heads, rows: int, batch: int, generator: torch.Generator) -> Acc
 
 
 @FORMS
-@pytest.mark.parametrize("links", [True, False])
+@pytest.mark.parametrize(("links", "kept"), [(True, 0), (False, 0), (True, 1), (True, 3), (True, 20)])
 @pytest.mark.parametrize("writes", COUNTS)
 @pytest.mark.parametrize("reads", COUNTS)
-def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: int, links: bool) -> None:
+def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: int, links: bool, kept: int) -> None:
     """Both forms agree with loops over heads and rows in what is read and in the state, to 1e-5."""
     generator = torch.Generator().manual_seed(0)
-    heads = Heads(reads, writes, 5, links)
+    heads = Heads(reads, writes, 5, links, kept)
     loop, state = Loop(heads, 9), used(heads, 9, 2, generator)
     loop.memory, loop.usage = state.memory[1].T.numpy(), state.usage[1].numpy().copy()
     for _ in range(50):
@@ -174,7 +177,8 @@ def test_fifty_steps_are_those_of_the_equations(form: Form, reads: int, writes: 
     np.testing.assert_allclose(state.read_weights[1], loop.read, atol=1e-5)
     np.testing.assert_allclose(state.write_weights[1], loop.write, atol=1e-5)
     np.testing.assert_allclose(state.usage[1], loop.usage, atol=1e-5)
-    np.testing.assert_allclose(state.links[1], loop.links, atol=1e-5)
+    all_links = spread(state.links) if kept else state.links
+    np.testing.assert_allclose(all_links[1], loop.links, atol=1e-5)
     np.testing.assert_allclose(state.precedence[1], loop.precedence, atol=1e-5)
 
 
@@ -200,6 +204,7 @@ def gradients(
     writes=st.integers(1, 4),
     word=st.integers(1, 5),
     links=st.booleans(),
+    kept=st.sampled_from([0, 0, 1, 2, 5, 30]),
     rows=st.integers(2, 18),
     every=st.integers(1, 4),
     threads=st.sampled_from([1, 2]),
@@ -207,15 +212,15 @@ def gradients(
     seed=st.integers(0, 999),
 )
 def test_gradients_are_those_of_the_plain_form(
-    wide: bool, batch: int, reads: int, writes: int, word: int, links: bool, rows: int, every: int, threads: int,
-    dense: bool, seed: int,
+    wide: bool, batch: int, reads: int, writes: int, word: int, links: bool, kept: int, rows: int, every: int,
+    threads: int, dense: bool, seed: int,
 ) -> None:  # fmt: skip
     """Through five steps, by every input and part of the first state, to 1e-5 in norm.
 
-    Whatever lies side by side, links kept or linked again.
+    Whatever lies side by side, links kept or linked again, all of them or the strongest.
     """
     generator = torch.Generator().manual_seed(seed)
-    heads = Heads(reads, writes, word, links)
+    heads = Heads(reads, writes, word, links, kept)
     _, state = plain(heads, draw(generator, batch, heads.interface), used(heads, rows, batch, generator))
     start = [part.requires_grad_() for part in state]
     interfaces = [draw(generator, batch, heads.interface).requires_grad_() for _ in range(5)]
@@ -363,10 +368,10 @@ def test_many_random_steps_give_numbers(form: Form, steps: int) -> None:
     assert all(part.isfinite().all() for part in state)
 
 
-@pytest.mark.parametrize("links", [True, False])
-def test_a_network_is_the_same_plain_and_fast(links: bool) -> None:
+@pytest.mark.parametrize(("links", "kept"), [(True, 0), (True, 2), (False, 0)])
+def test_a_network_is_the_same_plain_and_fast(links: bool, kept: int) -> None:
     """Outputs, states and the gradients of all parameters agree over a sequence."""
-    heads = Heads(2, 2, 4, links)
+    heads = Heads(2, 2, 4, links, kept)
     torch.manual_seed(0)
     networks = [DNC(3, 5, heads, rows=6, hidden=16, fast=fast).double() for fast in (False, True)]
     networks[1].load_state_dict(networks[0].state_dict())
@@ -399,13 +404,13 @@ def test_one_sample_is_a_batch_of_one(fast: bool) -> None:
 @pytest.mark.parametrize("rows", [1, 6, 16, 33, 64])
 @pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
 @pytest.mark.parametrize("batch", [(), (1,)])
-@pytest.mark.parametrize("links", [True, False])
+@pytest.mark.parametrize(("links", "kept"), [(True, 0), (True, 3), (False, 0)])
 def test_a_single_step_is_that_with_gradients(
-    links: bool, batch: tuple[int, ...], dtype: torch.dtype, rows: int
+    links: bool, kept: int, batch: tuple[int, ...], dtype: torch.dtype, rows: int
 ) -> None:
     """Once settled, a step of one sample runs in one call, to the same outputs and states, clipped or not."""
     torch.manual_seed(0)
-    network = DNC(3, 5, Heads(2, 2, 4, links), rows=rows, hidden=16, clip=1).to(dtype)
+    network = DNC(3, 5, Heads(2, 2, 4, links, kept), rows=rows, hidden=16, clip=1).to(dtype)
     with torch.no_grad():
         for parameter in (*network.controller.parameters(), *network.output.parameters()):
             parameter.mul_(8)
