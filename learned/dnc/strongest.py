@@ -46,9 +46,8 @@ def link_strongest(
         new_links: [2 * S * N], to fill; the rows that only fill up lanes stay as they are.
         ahead, back: [readers * N].
     """
-    rows, strongest = len(w), len(links) // (2 * len(w))
-    values, columns = np.empty(strongest, w.dtype), np.empty(strongest, np.int64)
-    latest = np.empty(min(2 * strongest + 1, alone or rows), np.int64)
+    values, columns, latest = room(links, w, alone)
+    rows, strongest = len(w), len(values)
     for lane in range(lanes_of(alone)):
         find_latest(p, alone or rows, lane, alone, latest)
         for n in range(alone or rows):
@@ -58,6 +57,14 @@ def link_strongest(
                 new_links[s * rows + k, own] = values[s]
                 new_links[(strongest + s) * rows + k, own] = columns[s]
             follow_one(n, values, columns, vectors, rows, lane, alone, ahead, back)
+
+
+@kernel
+def room(links: Array, w: Array, alone: int) -> tuple[Array, Array, Array]:
+    """Room for the links of a row and for `latest`."""
+    rows, strongest = len(w), len(links) // (2 * len(w))
+    latest = np.empty(min(2 * strongest + 1, alone or rows), np.int64)
+    return np.empty(strongest, w.dtype), np.empty(strongest, np.int64), latest
 
 
 @kernel
@@ -101,10 +108,10 @@ def link_one(
     count, (k, own), found = alone or rows, spot(n, lane, alone), 0
     to = w[k, own]
     for s in range(strongest):
-        m = column_of(links, s, rows, k, own, count)
-        if held(links, m, s, rows, k, own, count) < 0:  # a blank row has the same one S times
+        m, before = column_of(links, s, rows, k, own, count), links[s * rows + k, own]
+        if before != 0 or held(links, m, s, rows, k, own, count) < 0:  # a blank row has the same one S times
             there = spot(m, lane, alone)
-            link = (1 - to - w[there]) * links[s * rows + k, own] + to * p[there]
+            link = (1 - to - w[there]) * before + to * p[there]
             found = enter(values, columns, found, link if m != n else 0 * link, m)
     for m in latest:
         link = to * p[spot(m, lane, alone)]
@@ -159,9 +166,8 @@ def link_strongest_back(
         d_links: [2 * S * N] of zeros to fill, or nothing.
         d_w, d_p: [N], to which is added.
     """
-    rows, strongest = len(w), len(links) // (2 * len(w))
-    values, columns = np.empty(strongest, w.dtype), np.empty(strongest, np.int64)
-    latest = np.empty(min(2 * strongest + 1, alone or rows), np.int64)
+    values, columns, latest = room(links, w, alone)
+    rows, strongest = len(w), len(values)
     for lane in range(lanes_of(alone)):
         find_latest(p, alone or rows, lane, alone, latest)
         for n in range(alone or rows):
