@@ -1,13 +1,18 @@
 """Right and wrong on a grid: every move that begins a shortest path on the agent's own known map is right."""
 
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING
+
 from fogbench.planners.astar import AStarAgent
-from fogbench.planners.grid_teachers import GridTeachers
 from fogbench.planners.judging import Verdict
 from fogbench.planners.optimal import OptimalMoves
 from fogbench.worlds.grid.world import GridWorld, to_goal
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.maps.distances import nearer
 from fogbench.worlds.types import Array, Move, Observation, Task
+
+if TYPE_CHECKING:
+    from fogbench.planners.teachers import Teachers
 
 
 class GridJudge:
@@ -33,9 +38,10 @@ class GridJudge:
         return Hindsight(world)
 
     @classmethod
-    def side_by_side(cls, slots: int, *, hindsight: bool) -> GridTeachers:
-        """Teachers of so many episodes."""
-        return GridTeachers(slots, hindsight=hindsight)
+    def side_by_side(cls, slots: int, *, hindsight: bool) -> "Teachers":
+        """Teachers of so many episodes; they are named by a string, for no episode depends on them."""
+        made: Teachers = resolve_name("fogbench.planners.grid_teachers:GridTeachers")(slots, hindsight=hindsight)
+        return made
 
     def see(self, observation: Observation) -> None:
         """Write what the agent sees into the known map."""

@@ -1,15 +1,18 @@
 """What a network sees of a grid: what is kept of an episode, how it becomes tensors, and what its outputs mean."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fogbench.learned.encoding.grid_batch import GridViewpoints
 from fogbench.learned.encoding.grid_inputs import STILL, Inputs, Known, encode
 from fogbench.learned.encoding.grid_sizes import OUTPUTS, SIGHT, Frame
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.types import BLOCKED, DELTAS, FREE, UNKNOWN, Array, Cell, Move, Observation, Task
+
+if TYPE_CHECKING:
+    from fogbench.learned.encoding.viewpoints import Viewpoints
 
 BESIDE = SIGHT + np.array(DELTAS)  # [4, 2] where a sight shows the cells that the four moves lead to
 
@@ -75,9 +78,11 @@ class GridEncoding:
         self.frame.check(task.extent)
         return GridViewpoint(task, self.stitched)
 
-    def side_by_side(self, slots: int) -> GridViewpoints:
-        """Viewpoints of so many episodes."""
-        return GridViewpoints(slots, self.frame, stitched=self.stitched)
+    def side_by_side(self, slots: int) -> "Viewpoints":
+        """Viewpoints of so many episodes; they are named by a string, for no single episode depends on them."""
+        kind = resolve_name("fogbench.learned.encoding.grid_batch:GridViewpoints")
+        made: Viewpoints = kind(slots, self.frame, stitched=self.stitched)
+        return made
 
     def encode(self, viewpoints: Sequence[GridViewpoint]) -> Inputs:
         """What a network sees from some viewpoints."""

@@ -17,10 +17,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.encoding import viewpoints_of
+from fogbench.learned.encoding.viewpoints import viewpoints_of
 from fogbench.learned.networks.network import Network, rows
 from fogbench.learned.policy import Policy
-from fogbench.planners.judging import Teachers
+from fogbench.planners.teachers import Teachers
 from fogbench.worlds.batch import Luck, batch_of
 from fogbench.worlds.types import Array, World
 

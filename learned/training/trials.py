@@ -11,7 +11,8 @@ from fogbench.learned.networks.network import Network
 from fogbench.learned.training.recipe import Recipe, Worlds
 from fogbench.learned.training.rollout import Drawn, greedy, roll_out
 from fogbench.planners import JUDGES, judge_of
-from fogbench.planners.judging import Teacher, TeacherByTeacher, Teachers
+from fogbench.planners.judging import Teacher
+from fogbench.planners.teachers import TeacherByTeacher, Teachers
 from fogbench.worlds.batch import together
 from fogbench.worlds.mistake import Mistake, one_of
 from fogbench.worlds.streams import stream

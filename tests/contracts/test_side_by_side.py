@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fogbench.learned.encoding.encoding import ViewpointByViewpoint, viewpoints_of
+from fogbench.learned.encoding.viewpoints import ViewpointByViewpoint, viewpoints_of
 from fogbench.planners import judge_of
-from fogbench.planners.judging import TeacherByTeacher
+from fogbench.planners.teachers import TeacherByTeacher
 from fogbench.worlds.batch import WorldByWorld, batch_of, together
 from fogbench.worlds.types import World
 

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fogbench.worlds.grid.batch import GridBatch
 from fogbench.worlds.grid.moving import go, slip
 from fogbench.worlds.grid.rules import GridRules, SquareView
 from fogbench.worlds.maps.cells import KnownMap, manhattan
@@ -16,6 +16,9 @@ from fogbench.worlds.maps.distances import distances
 from fogbench.worlds.maps.sight import look, misread
 from fogbench.worlds.picture import Cells, Picture, Squares
 from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, Array, Cell, Move, Observation, Step, Task
+
+if TYPE_CHECKING:
+    from fogbench.worlds.batch import Batch
 
 
 class GridState(NamedTuple):
@@ -43,9 +46,10 @@ class GridWorld:
     """Cells of which one must be visited before the goal counts: in a tunnel, from where its end wall is seen."""
 
     @classmethod
-    def side_by_side(cls, slots: int) -> GridBatch:
-        """A batch of such worlds."""
-        return GridBatch(slots)
+    def side_by_side(cls, slots: int) -> "Batch":
+        """A batch of such worlds; it is named by a string, for no episode depends on it."""
+        batch: Batch = resolve_name("fogbench.worlds.grid.batch:GridBatch")(slots)
+        return batch
 
     def reset(self) -> GridState:
         """The state before the first decision."""

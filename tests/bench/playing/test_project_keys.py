@@ -73,6 +73,7 @@ EDITS = {
     "planners/route.py": [*WORLDS, *SEARCHING],  # through the reference and the judge, and `glance` of A*
     "planners/astar.py": [*WORLDS, *SEARCHING],
     "planners/optimal.py": [*WORLDS],  # of the judge
+    "planners/grid_teachers.py": [],
     "planners/incremental.py": ["dstar_lite", "frontier"],
     "planners/frontier.py": ["frontier"],
     "planners/segment.py": ["rrt_star"],
@@ -80,6 +81,7 @@ EDITS = {
     "worlds/settings.py": [*WORLDS, *AGENTS],
     "worlds/maps/cells.py": [*WORLDS, *SEARCHING, *NETWORKS],
     "worlds/maps/sight.py": [*WORLDS],
+    "worlds/grid/batch.py": [],
     "worlds/maps/split.py": ["tunnel", "rooms"],
     "worlds/maps/families/tunnel.py": ["tunnel"],
     "worlds/maps/files/octile.py": [],
@@ -87,6 +89,8 @@ EDITS = {
     "learned/vin.py": ["macn", "vin"],
     "learned/dnc/links.py": ["macn", "cnn_memory"],
     "learned/encoding/grid.py": NETWORKS,
+    "learned/encoding/grid_batch.py": [],  # as all that is played side by side
+    "learned/convolution/loops.py": ["macn", "cnn_memory"],
     "learned/training/imitation.py": [],
     "bench/playing/loop.py": [*WORLDS],
     "bench/playing/runner.py": [],

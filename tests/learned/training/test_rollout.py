@@ -19,7 +19,8 @@ from fogbench.learned.training.trials import teachers_in
 from fogbench.learned.vin import Vin
 from fogbench.planners.grid_judge import GridJudge
 from fogbench.planners.grid_teachers import GridTeachers
-from fogbench.planners.judging import TeacherByTeacher, Verdict
+from fogbench.planners.judging import Verdict
+from fogbench.planners.teachers import TeacherByTeacher
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.tunnel import Tunnel
