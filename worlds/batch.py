@@ -47,7 +47,7 @@ class Batch(Protocol):
     def sense(self, slots: Array) -> Sequence[Observation]:
         """What the agents there are told."""
 
-    def step(self, slots: Array, actions: Sequence[Any]) -> Steps:
+    def step(self, slots: Array, actions: Sequence[Any] | Array) -> Steps:
         """The effects of their actions.
 
         Raises:
@@ -76,7 +76,7 @@ class WorldByWorld:
         """What the agents there are told."""
         return [self.worlds[slot].sense(self.states[slot], self.lucks[slot]) for slot in slots.tolist()]
 
-    def step(self, slots: Array, actions: Sequence[Any]) -> Steps:
+    def step(self, slots: Array, actions: Sequence[Any] | Array) -> Steps:
         """The effects of their actions."""
         done = [
             self.worlds[slot].step(self.states[slot], action, self.lucks[slot])

@@ -53,7 +53,8 @@ agents:
 episodes: 2
 published:
   source: a table
-  success: {dstar_lite: {rooms: 96.3, maze: .inf}}
+  success: {dstar_lite: {rooms: 96.3}}
+  path_ratio: {dstar_lite: {maze: .inf}}
 """
 
 RECIPE = b"""name: small

@@ -101,7 +101,7 @@ class GridBatch:
         views.setflags(write=False)
         return GridObservations(self.steps[slots], places, views[:], self.stopped[slots], radii)
 
-    def step(self, slots: Array, actions: Sequence[Any]) -> Steps:
+    def step(self, slots: Array, actions: Sequence[Any] | Array) -> Steps:
         """Move, or slip, or run into obstacles.
 
         Raises:
