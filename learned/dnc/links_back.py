@@ -32,7 +32,6 @@ def links_back(
     word, rows, readers, _, linked, alone, strongest = sizes
     size, before = head_size(heads, readers), old.read_weights
     ahead, back = unfilled(readers * rows, d_read), unfilled(readers * rows, d_read)
-    clear(d_old.links)
     for i in range(linked):
         w, p = weights[i * rows : (i + 1) * rows], old.precedence[i * rows : (i + 1) * rows]
         d_w, d_p, modes = d_weights[i * rows :], d_old.precedence[i * rows :], heads[word + 2 + i :]
@@ -41,9 +40,11 @@ def links_back(
         clear(back)
         if strongest:
             own = 2 * strongest * rows
+            d_links = d_old.links[i * own : (i + 1) * own]
+            clear(d_links)
             link_strongest_back(
                 old.links[i * own : (i + 1) * own], w, p, modes, size, linked, before, d_read, d_new.links[i * own :],
-                alone, ahead, back, d_old.links[i * own :], d_w, d_p,
+                alone, ahead, back, d_links, d_w, d_p,
             )  # fmt: skip
         else:
             link_all_back(sizes, i, old.links, w, p, modes, size, before, d_read, d_new.links, ahead, back,

@@ -1,6 +1,7 @@
 """Temporal links of which each row keeps the strongest alone, both ways.
 
 As in Rae et al. 2016, "Scaling Memory-Augmented Neural Networks with Sparse Reads and Writes".
+
 A link from a row that had none can only lead to one of the rows written last. So a row's new links are among those that
 it has and a few that are the same for all rows, and no row is compared with all others.
 
