@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 
-from fogbench.learned.convolution.loops import bias_back, convolve, convolve_back, size_of, weigh
-from fogbench.learned.kernels.instructions import at, full, put, total, until
+from fogbench.learned.convolution.loops import bias_back, convolve, convolve_back, weigh
+from fogbench.learned.kernels.instructions import at, put, total, until
 from fogbench.learned.kernels.lane_arrays import clear
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.native import Loop, job, pointer, vector
+from fogbench.learned.kernels.planes import pack, plane_size, unpack
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
@@ -27,29 +28,27 @@ BACKWARD_JOB = job(*SIZES, "image", "weights", "tape", "d_y", "d_weights", "d_bi
 
 
 @kernel
-def lay_maps(maps: Array, planes: Array, row: int) -> None:
-    """Maps [samples, channels, H, W] become planes whose rims are zeros already; a lane without a sample is zero."""
-    channels, height, width = maps.shape[1:]
-    size = len(planes) // channels
+def lay_maps(maps: Array, planes: Array) -> None:
+    """Maps [samples, channels, H, W] become planes."""
+    channels = maps.shape[1]
+    clear(planes)
     for channel in range(channels):
-        for y in range(height):
-            for x in range(width):
-                cell = channel * size + (y + 1) * row + x + 1
-                put(planes, cell, full(planes, 0))
-                for lane in range(len(maps)):
-                    planes[cell, lane] = maps[lane, channel, y, x]
+        pack(maps, channel, 0, plane_of(planes, channel, channels), LANES)
 
 
 @kernel
-def unlay_maps(planes: Array, maps: Array, row: int) -> None:
-    """Undo `lay_maps`."""
-    channels, height, width = maps.shape[1:]
+def plane_of(planes: Array, channel: int, channels: int) -> Array:
+    """One of some planes, flat."""
     size = len(planes) // channels
-    for lane in range(len(maps)):
-        for channel in range(channels):
-            for y in range(height):
-                for x in range(width):
-                    maps[lane, channel, y, x] = planes[channel * size + (y + 1) * row + x + 1, lane]
+    return planes[channel * size : (channel + 1) * size].reshape(-1)
+
+
+@kernel
+def unlay_maps(planes: Array, maps: Array) -> None:
+    """Undo `lay_maps`."""
+    channels = maps.shape[1]
+    for channel in range(channels):
+        unpack(plane_of(planes, channel, channels), maps, channel, 0, LANES)
 
 
 @kernel
@@ -62,21 +61,21 @@ def maps_of(number: Any, address: int, channels: int, job: Any, block: int) -> A
 @kernel
 def tape_of(number: Any, job: Any, block: int) -> Array:
     """The tape of a block."""
-    rows = job.biases_size * size_of(job.height, job.width)
+    rows = job.biases_size * plane_size(1, job.height, job.width)
     return carray(pointer(job.tape), ((block + 1) * rows, LANES), number)[block * rows :]
 
 
 @kernel
 def forward_room(number: Any, job: Any) -> tuple[Array]:
     """Planes for an image."""
-    return (np.zeros((job.inputs * size_of(job.height, job.width), LANES), number),)
+    return (np.zeros((job.inputs * plane_size(1, job.height, job.width), LANES), number),)
 
 
 @kernel
 def forward(number: Any, job: Any, block: int, before: Array) -> None:
     """Four convolutions of a block."""
-    size, row = size_of(job.height, job.width), job.width + 1
-    lay_maps(maps_of(number, job.image, job.inputs, job, block), before, row)
+    size, row = plane_size(1, job.height, job.width), job.width + 1
+    lay_maps(maps_of(number, job.image, job.inputs, job, block), before)
     tape = tape_of(number, job, block)
     weights = vector(number, job.weights, job.weights_size)
     biases = vector(number, job.biases, job.biases_size)
@@ -85,13 +84,13 @@ def forward(number: Any, job: Any, block: int, before: Array) -> None:
         y = tape[start * size : (start + outputs) * size]
         convolve(x, inputs, weights[weight:], biases[start : start + outputs], size, row, y)
         x, weight, start, inputs = y, weight + outputs * inputs * 9, start + outputs, outputs
-    unlay_maps(x, maps_of(number, job.y, job.outputs, job, block), row)
+    unlay_maps(x, maps_of(number, job.y, job.outputs, job, block))
 
 
 @kernel
 def backward_room(number: Any, job: Any) -> tuple[Array, ...]:
     """Planes for an image, for two gradients, and the gradients by weights and biases."""
-    size, most = size_of(job.height, job.width), max(job.channels, job.outputs)
+    size, most = plane_size(1, job.height, job.width), max(job.channels, job.outputs)
     return (
         np.zeros((job.inputs * size, LANES), number), np.zeros((most * size, LANES), number),
         np.zeros((most * size, LANES), number), np.zeros((job.weights_size, LANES), number),
@@ -104,14 +103,13 @@ def backward(
     number: Any, job: Any, block: int, image: Array, one: Array, other: Array, d_weights: Array, d_biases: Array
 ) -> None:
     """Back through four convolutions of a block."""
-    size, row, channels = size_of(job.height, job.width), job.width + 1, job.channels
-    lay_maps(maps_of(number, job.image, job.inputs, job, block), image, row)
+    size, row, channels = plane_size(1, job.height, job.width), job.width + 1, job.channels
+    lay_maps(maps_of(number, job.image, job.inputs, job, block), image)
     tape = tape_of(number, job, block)
     clear(d_weights)
     clear(d_biases)
     d = one[: job.outputs * size]
-    clear(d)
-    lay_maps(maps_of(number, job.d_y, job.outputs, job, block), d, row)
+    lay_maps(maps_of(number, job.d_y, job.outputs, job, block), d)
     rectify_back(tape[3 * channels * size :], d)
     weights = vector(number, job.weights, job.weights_size)
     weight, outputs, d_x = job.weights_size, job.outputs, other

@@ -12,9 +12,10 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
 from fogbench.learned.convolution.blocks import BACKWARD, FORWARD
-from fogbench.learned.convolution.loops import FOUR, size_of
+from fogbench.learned.convolution.loops import FOUR
 from fogbench.learned.convolution.sizes import shapes
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.planes import plane_size
 from fogbench.learned.layers import convolution
 
 
@@ -45,7 +46,7 @@ class _Fast(Function):
         weights, biases = (torch.cat([part.flatten() for part in parameters[k::2]]) for k in range(2))
         channels, outputs, blocks = len(parameters[1]), len(parameters[-1]), -(-batch // LANES)
         y = image.new_empty(batch, outputs, height, width)
-        tape = image.new_empty(blocks, len(biases) * size_of(height, width), LANES)
+        tape = image.new_empty(blocks, len(biases) * plane_size(1, height, width), LANES)
         ctx.sizes = batch, height, width, inputs, channels, outputs, len(weights), len(biases)
         ctx.blocks = blocks
         FORWARD.run(image.dtype, blocks, ctx.sizes, (image, weights, biases, tape, y))

@@ -1,8 +1,8 @@
 """The loops of a 3x3 convolution of sixteen samples that lie side by side, forward and back.
 
 Words used here
-    plane     [P, 16] a channel: zeros, then H rows of W cells, each with one zero cell after it, then zeros. Cell
-              (y, x) is number (y + 1) * row + x + 1, and a neighbour is only a shift
+    plane     [P, 16] as in `fogbench.learned.kernels.planes`, with a row for each cell: cell (y, x) of the maps is
+              number (y + 1) * row + x + 1, and a neighbour is only a shift
     row       W + 1;  P = (H + 2) * row + 2, the `size` of a plane
     x, y      [channels * P, 16] the planes before and after a convolution; d is the gradient by y
     weights   [outputs * inputs * 9] as PyTorch has them
@@ -15,17 +15,13 @@ from typing import Any
 from fogbench.learned.kernels.functions import larger
 from fogbench.learned.kernels.instructions import at, full, put, until
 from fogbench.learned.kernels.lane_arrays import add
-from fogbench.worlds.kernel import fused, kernel
+from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.planes import clear
+from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
 FOUR = 4
 """Outputs that are made together, two cells of each."""
-
-
-@kernel
-def size_of(height: int, width: int) -> int:
-    """P."""
-    return (height + 2) * (width + 1) + 2
 
 
 @fused
@@ -90,13 +86,8 @@ def sums(
 @fused
 def clear_rims(y: Array, size: int, row: int) -> None:
     """Set to zero all that is no cell of a map."""
-    zero = full(y, 0)
     for first in range(0, len(y), size):
-        for cell in range(row + 1):
-            put(y, first + cell, zero)
-            put(y, first + size - 1 - cell, zero)
-        for cell in range(2 * row, size - row, row):
-            put(y, first + cell, zero)
+        clear(y[first : first + size].reshape(-1), LANES, (size - 2) // row - 2, row - 1)
 
 
 @fused

@@ -24,8 +24,8 @@ from fogbench.learned.kernels.convolution import convolve
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.linear import apply
 from fogbench.learned.kernels.native import Loop, job, matrix, pointer, vector
+from fogbench.learned.kernels.planes import pack, plane_size, planes, unpack
 from fogbench.learned.value_iteration.forward import correlate, forward_block
-from fogbench.learned.value_iteration.planes import pack, plane_size, planes, unpack
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 

@@ -1,10 +1,10 @@
-"""The gradients of value iteration, in blocks of samples; the words are those of the file `planes`."""
+"""The gradients of value iteration, in blocks of samples; the words are those of `fogbench.learned.kernels.planes`."""
 
 from typing import Any
 
 from fogbench.learned.kernels.native import Loop
+from fogbench.learned.kernels.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
 from fogbench.learned.value_iteration.job import BACKWARD_JOB, history_of, maps_of, weights_of
-from fogbench.learned.value_iteration.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
 from fogbench.worlds.kernel import fused, kernel, summing
 from fogbench.worlds.types import Array
 

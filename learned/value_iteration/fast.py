@@ -12,9 +12,9 @@ from torch.autograd.function import once_differentiable
 
 from fogbench.learned.kernels.lanes import LANES
 from fogbench.learned.kernels.native import Loop
+from fogbench.learned.kernels.planes import plane_size
 from fogbench.learned.value_iteration.backward import BACKWARD
 from fogbench.learned.value_iteration.forward import FORWARD
-from fogbench.learned.value_iteration.planes import plane_size
 
 
 def fast(reward: Tensor, weights: Tensor, iterations: int, barrier: Tensor | None = None) -> tuple[Tensor, Tensor]:

@@ -1,12 +1,12 @@
-"""Value iteration on blocks of samples; the words are those of the file `planes`."""
+"""Value iteration on blocks of samples; the words are those of `fogbench.learned.kernels.planes`."""
 
 from typing import Any
 
 import numpy as np
 
 from fogbench.learned.kernels.native import Loop
+from fogbench.learned.kernels.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
 from fogbench.learned.value_iteration.job import FORWARD_JOB, history_of, maps_of, weights_of
-from fogbench.learned.value_iteration.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 

@@ -9,7 +9,7 @@
     q, v                [B, 4, H, W] the last Q, and [B, H, W] its maximum over the actions
     d...                gradients, shaped like what they are by, but `dweights` [blocks, 4, C + 1, 9], each block's part
 
-The letters are those of `fogbench.learned.value_iteration.planes`. From `reward` on they are addresses.
+The letters are those of `fogbench.learned.kernels.planes`. From `reward` on they are addresses.
 """
 
 from typing import Any
@@ -18,7 +18,7 @@ import numpy as np
 from numba import carray  # type: ignore[attr-defined]  # it does
 
 from fogbench.learned.kernels.native import job, pointer
-from fogbench.learned.value_iteration.planes import plane_size
+from fogbench.learned.kernels.planes import plane_size
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
 

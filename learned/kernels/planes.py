@@ -1,4 +1,4 @@
-"""Planes: how the loops of value iteration see maps, so that the neighbours of all cells are nine shifted views.
+"""Planes: how loops over maps see them, so that the neighbours of all cells are nine shifted views.
 
 Words used here
     L, C     samples of a block, laid side by side: its lanes;  channels of the reward map
