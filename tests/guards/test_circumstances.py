@@ -103,8 +103,11 @@ def remove(desk: Any, run: Any) -> None:
 
 
 def second(desk: Any, run: Any) -> None:
-    """Somebody else runs the same at the same time, and is told so."""
-    assert desk.fogbench("run", "s.yaml").code == 2
+    """Somebody else runs the same before this run has ended, however slow that is, and is told so."""
+    os.killpg(run.pid, signal.SIGSTOP)
+    code = desk.fogbench("run", "s.yaml").code
+    os.killpg(run.pid, signal.SIGCONT)
+    assert code == 2
 
 
 ODD = {
