@@ -4,6 +4,7 @@ What cannot play here, since a package is missing, stays where it is: nobody can
 """
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -44,12 +45,15 @@ def _skipped(scenario: Scenario) -> set[Line]:
 
 
 def _move(folder: Path, source: str, target: str, goes: Callable[[pd.DataFrame], Array]) -> None:
-    there = {line for part in parts(folder, target) for line in _lines(_told(part), TOLD)}
+    @cache
+    def there() -> set[Line]:  # before the first row comes; mostly none does
+        return {line for part in parts(folder, target) for line in _lines(_told(part), TOLD)}
+
     for part in parts(folder, source):
         told = _told(part)
         moved = goes(told)  # [n] bool
         if moved.any():
-            rows, new = pq.read_table(part), moved & ~_among(told, TOLD, there)
+            rows, new = pq.read_table(part), moved & ~_among(told, TOLD, there())
             if new.any():  # not those of a run that was killed here
                 write_table(new_part(folder, target), rows.filter(new))
             if moved.all():

@@ -55,14 +55,19 @@ def read(folder: Path, scenario: Scenario, columns: Sequence[str], versions: Ver
     Raises:
         StoreError: a file is broken.
     """
-    return _read(parts(folder), current(scenario, versions), columns)
+    return _wanted(_rows(parts(folder), columns), current(scenario, versions), columns)
 
 
-def _read(files: Sequence[Path], wanted: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
-    """Those rows of some parts that agree with `wanted` on the columns of both, once each."""
+def _rows(files: Sequence[Path], columns: Sequence[str]) -> pa.Table:
+    """All rows of some parts, with what tells whether they count."""
     needed = list(dict.fromkeys([*WHO, *columns, *KEYS]))
-    tables = [SCHEMA.empty_table().select(needed), *(load(part, needed).select(needed) for part in files)]
-    rows = pa.concat_tables(tables).to_pandas(types_mapper=LISTS.get).merge(wanted)
+    tables = (load(part, needed).select(needed) for part in files)
+    return pa.concat_tables([SCHEMA.empty_table().select(needed), *tables])
+
+
+def _wanted(table: pa.Table, wanted: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
+    """Those rows that agree with `wanted` on the columns of both, once each."""
+    rows = table.to_pandas(types_mapper=LISTS.get).merge(wanted)
     told = rows.loc[rows["episode"] < rows["wanted"], [*WHO, "place"]].drop_duplicates(WHO)
     order = told.sort_values(["place", "episode"]).index
     found: pd.DataFrame = rows.loc[order, list(columns)].reset_index(drop=True)  # long rows are copied only here
@@ -85,11 +90,11 @@ def stale(folder: Path, scenario: Scenario, versions: Versions | None = None) ->
     Raises:
         StoreError: a file is broken.
     """
-    wanted = current(scenario, versions)
-    valid = _episodes(_read(parts(folder), wanted, WHO))
-    files = [*parts(folder), *parts(folder, OUTDATED)]
-    ever = _episodes(_read(files, wanted.drop(columns=["agent_key", "world_key"]), WHO))
-    counts = {pair: len(episodes - valid.get(pair, set())) for pair, episodes in ever.items()}
+    wanted, rows = current(scenario, versions), _rows(parts(folder), WHO)
+    valid = _episodes(_wanted(rows, wanted, WHO))
+    ever = pa.concat_tables([rows, _rows(parts(folder, OUTDATED), WHO)])
+    had = _episodes(_wanted(ever, wanted.drop(columns=["agent_key", "world_key"]), WHO))
+    counts = {pair: len(episodes - valid.get(pair, set())) for pair, episodes in had.items()}
     return {pair: count for pair, count in counts.items() if count}
 
 

@@ -57,6 +57,7 @@ try:
         from matplotlib.artist import Artist
         from matplotlib.axes import Axes
         from matplotlib.axis import Axis
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
         from matplotlib.lines import Line2D
         from matplotlib.patches import Patch
@@ -101,7 +102,8 @@ def draw(make: Callable[[], Figure], path: Path) -> None:
     contents = BytesIO()
     try:
         with ours():
-            make().savefig(contents, format="png")
+            canvas: Any = FigureCanvasAgg(make())
+            canvas.print_png(contents)  # `savefig` draws a figure twice
         write(path, contents.getvalue())
     except Exception as error:
         raise Mistake(f"{path}: got {raised(error)}; expected a plot that can be drawn and written.") from error
