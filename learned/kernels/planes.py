@@ -38,13 +38,17 @@ def planes(count: int, size: int, dtype: Any) -> Array:
 
 @kernel
 def pack(maps: Array, channel: int, first: int, plane: Array, lanes: int) -> None:
-    """Lay a channel of the samples from `first` on, of maps [B, C, H, W], side by side into a plane."""
+    """Lay a channel of the samples from `first` on, of maps [B, C, H, W], side by side into a plane.
+
+    Line by line of the plane: sample by sample takes four times as long on maps of 32x32.
+    """
     height, width = maps.shape[2:]
     cells = cells_of(plane, lanes, height, width)
-    for lane in range(min(lanes, len(maps) - first)):
-        for y in range(height):
-            for x in range(width):
-                cells[y + 1, x + 1, lane] = maps[first + lane, channel, y, x]
+    samples = maps[first : first + lanes, channel]
+    for y in range(height):
+        for x in range(width):
+            for lane in range(len(samples)):
+                cells[y + 1, x + 1, lane] = samples[lane, y, x]
 
 
 @kernel
@@ -98,10 +102,11 @@ def taps(w: Array) -> tuple[float, ...]:
 
 
 @fused
-def dot(w: tuple[float, ...], x: tuple[float, ...]) -> float:
-    """The sum of nine products."""
+def plus(start: float, w: tuple[float, ...], x: tuple[float, ...]) -> float:
+    """A number and nine products: nine instructions, where a sum of the products that is added takes ten."""
     return (
-        w[0] * x[0] + w[1] * x[1] + w[2] * x[2]
+        start
+        + w[0] * x[0] + w[1] * x[1] + w[2] * x[2]
         + w[3] * x[3] + w[4] * x[4] + w[5] * x[5]
         + w[6] * x[6] + w[7] * x[7] + w[8] * x[8]
     )  # fmt: skip

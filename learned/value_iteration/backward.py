@@ -3,7 +3,7 @@
 from typing import Any
 
 from fogbench.learned.kernels.native import Loop
-from fogbench.learned.kernels.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
+from fogbench.learned.kernels.planes import at, clear, neighbours, pack, plane_size, planes, plus, taps, unpack
 from fogbench.learned.value_iteration.job import BACKWARD_JOB, history_of, maps_of, weights_of
 from fogbench.worlds.kernel import fused, kernel, summing
 from fogbench.worlds.types import Array
@@ -82,7 +82,7 @@ def gather(plane: Array, weights: Array, grads: Array, row: int, lanes: int) -> 
         w = taps(weights[action][::-1])
         views = neighbours(grads[action], row, lanes)
         for j in range(len(plane) - 2 * start):
-            out[j] += dot(w, at(views, j))
+            out[j] = plus(out[j], w, at(views, j))
 
 
 @kernel

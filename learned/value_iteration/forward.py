@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from fogbench.learned.kernels.native import Loop
-from fogbench.learned.kernels.planes import at, clear, dot, neighbours, pack, plane_size, planes, taps, unpack
+from fogbench.learned.kernels.planes import at, clear, neighbours, pack, plane_size, planes, plus, taps, unpack
 from fogbench.learned.value_iteration.job import FORWARD_JOB, history_of, maps_of, weights_of
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
@@ -73,7 +73,7 @@ def backup(terms: Array, weights: Array, before: Array, after: Array, choice: Ar
     views, v, a = neighbours(before, row, lanes), after[start:], choice[start:]
     for j in range(len(before) - 2 * start):
         x = at(views, j)
-        v[j], a[j] = largest(t0[j] + dot(w0, x), t1[j] + dot(w1, x), t2[j] + dot(w2, x), t3[j] + dot(w3, x))
+        v[j], a[j] = largest(plus(t0[j], w0, x), plus(t1[j], w1, x), plus(t2[j], w2, x), plus(t3[j], w3, x))
 
 
 @kernel
@@ -107,10 +107,10 @@ def correlate(terms: Array, weights: Array, plane: Array, row: int, lanes: int) 
     views = neighbours(plane, row, lanes)
     for j in range(len(plane) - 2 * start):
         x = at(views, j)
-        t0[j] += dot(w0, x)
-        t1[j] += dot(w1, x)
-        t2[j] += dot(w2, x)
-        t3[j] += dot(w3, x)
+        t0[j] = plus(t0[j], w0, x)
+        t1[j] = plus(t1[j], w1, x)
+        t2[j] = plus(t2[j], w2, x)
+        t3[j] = plus(t3[j], w3, x)
 
 
 FORWARD = Loop(forward, FORWARD_JOB, room)
