@@ -23,6 +23,7 @@ from uuid import uuid4
 
 import numba
 import numpy as np
+from numba.extending import intrinsic
 
 from fogbench.worlds import numba_doors
 from fogbench.worlds.streams import digest
@@ -58,6 +59,11 @@ def fused(function: F) -> F:
 def summing(function: F) -> F:
     """A `fused` kernel that may also add its numbers in any order, for long sums."""
     return _compile(function, fastmath={"contract", "reassoc"})
+
+
+def instruction(compose: Callable[..., Any]) -> Callable[..., Any]:
+    """An instruction that kernels can call, of a function from Numba types to a signature and a builder."""
+    return cast(Callable[..., Any], intrinsic(compose))
 
 
 def callback(loop: Callable[[Any], None]) -> int:

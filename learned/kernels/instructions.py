@@ -4,19 +4,14 @@ The arrays of such a kernel are [any, at least 16]; row i, or its first sixteen 
 """
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
 
 from fogbench.learned.kernels import operators  # noqa: F401  whoever has lanes can add them
 from fogbench.learned.kernels.lanes import LANES, Lanes, spread
-
-
-def instruction(compose: Callable[..., Any]) -> Callable[..., Any]:
-    """An instruction that kernels can call, of a function from Numba types to a signature and a builder."""
-    return cast(Callable[..., Any], intrinsic(compose))
+from fogbench.worlds.kernel import instruction
 
 
 def _address(context: Any, builder: Any, rows: Any, array: Any, kind: Any, index: Any) -> Any:

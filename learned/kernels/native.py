@@ -17,8 +17,7 @@ from llvmlite import ir
 from numba import carray, types  # type: ignore[attr-defined]  # it has both
 from torch import Tensor
 
-from fogbench.learned.kernels.instructions import instruction
-from fogbench.worlds.kernel import callback, kernel
+from fogbench.worlds.kernel import callback, instruction, kernel
 from fogbench.worlds.types import Array
 
 NUMBERS: dict[torch.dtype, Any] = {torch.float32: np.float32, torch.float64: np.float64}

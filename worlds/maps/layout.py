@@ -6,6 +6,8 @@ from typing import Annotated, ClassVar, NamedTuple, Protocol
 import numpy as np
 from pydantic import Field
 
+from fogbench.worlds.draws import below, luck
+from fogbench.worlds.kernel import kernel
 from fogbench.worlds.settings import SIDE, Settings
 from fogbench.worlds.types import Array, Cell, MapError, World
 
@@ -100,8 +102,14 @@ def fit(layout: Layout, conditions: CellConditions, rng: np.random.Generator) ->
     free = np.flatnonzero(~layout.blocked)  # [n]
     width = layout.blocked.shape[1]
     for _ in range(PAIRS if len(free) > 1 else 0):
-        a, b = (int(free[rng.integers(len(free))]) for _ in range(2))  # far quicker than two in one call
+        a, b = two_of(free, luck(rng))
         found = conditions.world(layout, divmod(a, width), divmod(b, width))
         if found is not None:
             return found
     return None
+
+
+@kernel
+def two_of(cells: Array, luck: int) -> tuple[int, int]:
+    """Two of [n] cells, each uniform, so that they may be one."""
+    return cells[below(luck, len(cells))], cells[below(luck, len(cells))]

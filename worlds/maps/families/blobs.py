@@ -5,6 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
+from fogbench.worlds.draws import below, luck
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.maps.layout import CellConditions, Layout, SquareMaps
 from fogbench.worlds.settings import SIDE, PositiveRange, ascending
@@ -35,10 +36,30 @@ class Blobs(SquareMaps):
     def draw(self, rng: np.random.Generator, conditions: CellConditions) -> Layout:
         """A map without a task; the upper left corner of a rectangle is uniform over the cells."""
         del conditions
-        count = int(rng.integers(*self.obstacles, endpoint=True))
-        corners = rng.integers(self.size, size=(count, 2))  # [count, 2]
-        sides = rng.integers(*self.obstacle_size, size=(count, 2), endpoint=True)  # [count, 2]
-        return Layout(covered(self.size, corners, sides))
+        return Layout(strewn(luck(rng), self.size, *self.obstacles, *self.obstacle_size))
+
+
+@kernel
+def strewn(luck: int, size: int, fewest: int, most: int, smallest: int, largest: int) -> Array:
+    """Which cells of a square lie in drawn rectangles: [size, size] bool; first all corners are drawn, then all sides.
+
+    Args:
+        luck: of the map, see `fogbench.worlds.draws`.
+        size: of the square.
+        fewest: rectangles, at least 0.
+        most: rectangles.
+        smallest: side of a rectangle, at least 1.
+        largest: side of a rectangle.
+    """
+    count = fewest + below(luck, most - fewest + 1)
+    corners, sides = np.empty((count, 2), np.int64), np.empty((count, 2), np.int64)
+    for k in range(count):
+        for axis in range(2):
+            corners[k, axis] = below(luck, size)
+    for k in range(count):
+        for axis in range(2):
+            sides[k, axis] = smallest + below(luck, largest - smallest + 1)
+    return covered(size, corners, sides)
 
 
 @kernel
