@@ -14,7 +14,9 @@ runs along the rows of a single map.
 from typing import Any
 
 import numpy as np
+from numba import carray  # type: ignore[attr-defined]  # it does
 
+from fogbench.learned.kernels.native import pointer
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
@@ -34,6 +36,12 @@ def planes(count: int, size: int, dtype: Any) -> Array:
     memory = np.empty(count * size + LINE, dtype)
     start = -memory.ctypes.data % LINE // memory.itemsize
     return memory[start : start + count * size].reshape((count, size))
+
+
+@kernel
+def lent(room: Array) -> Array:
+    """The same room [m, n] for loops that slice it often: who has it is not counted, so its owner must outlive them."""
+    return carray(pointer(room.ctypes.data), room.shape, room.dtype)
 
 
 @kernel

@@ -3,7 +3,7 @@
 from typing import Any
 
 from fogbench.learned.kernels.native import Loop
-from fogbench.learned.kernels.planes import at, clear, neighbours, pack, plane_size, planes, plus, taps, unpack
+from fogbench.learned.kernels.planes import at, clear, lent, neighbours, pack, plane_size, planes, plus, taps, unpack
 from fogbench.learned.value_iteration.job import BACKWARD_JOB, history_of, maps_of, weights_of
 from fogbench.worlds.kernel import fused, kernel, summing
 from fogbench.worlds.types import Array
@@ -18,6 +18,7 @@ def room(number: Any, job: Any) -> tuple[Array]:
 @kernel
 def backward(number: Any, job: Any, block: int, scratch: Array) -> None:
     """One block of a job."""
+    scratch = lent(scratch)
     values, choices = history_of(number, block, job)
     backward_block(
         job.lanes, block * job.lanes,

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from fogbench.learned.kernels.native import Loop
-from fogbench.learned.kernels.planes import at, clear, neighbours, pack, plane_size, planes, plus, taps, unpack
+from fogbench.learned.kernels.planes import at, clear, lent, neighbours, pack, plane_size, planes, plus, taps, unpack
 from fogbench.learned.value_iteration.job import FORWARD_JOB, history_of, maps_of, weights_of
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
@@ -21,6 +21,7 @@ def room(number: Any, job: Any) -> tuple[Array, Array]:
 @kernel
 def forward(number: Any, job: Any, block: int, scratch: Array, choices: Array) -> None:
     """One block of a job."""
+    scratch, choices = lent(scratch), lent(choices)
     values = scratch[5:]  # two that take turns, if none is to be kept
     if job.values:
         values, choices = history_of(number, block, job)
