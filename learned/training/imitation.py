@@ -54,6 +54,9 @@ class Imitation(Settings):
     """Learning rate over the first half of the batches, and at the end of the second, over which it falls."""
     clip: Rate = 5.0
     """The gradient's norm at most."""
+    average: Annotated[int, Field(ge=1, le=10_000)] = 1
+    """Batches over which weights are averaged, those of longer ago counting less; the mean is what is tried and kept
+    (Polyak & Juditsky 1992). 1: the weights as they are."""
     access_decay: Weight = 0.0
     """Squared weights of a DNC's interface to its memory count as much in the loss (Khan et al. 2018, section 4.2)."""
     noise: Weight = 0.0

@@ -5,10 +5,12 @@ luck of a batch comes from streams of its number, so a training goes on from its
 """
 
 from collections.abc import Mapping
-from typing import Any
+from functools import partial
+from typing import Any, cast
 
 import torch
 from torch import Tensor
+from torch.optim.swa_utils import AveragedModel
 
 from fogbench.learned.agent import load
 from fogbench.learned.networks.network import Network
@@ -39,10 +41,17 @@ class Imitator:
             except Mistake as error:
                 raise Mistake(f"{recipe.name}: {error}.") from None
         self.recipe, self.learning = recipe, learning
-        self.network = load(recipe.network)
-        self.optimiser = OPTIMISERS[learning.optimiser](self.network.parameters())
+        self.learner = load(recipe.network)
+        """What learns, and plays in training."""
+        self.mean = AveragedModel(self.learner, avg_fn=partial(drawn_nearer, learning.average))
+        self.optimiser = OPTIMISERS[learning.optimiser](self.learner.parameters())
         self.batches = 0
         """Learned from so far."""
+
+    @property
+    def network(self) -> Network:
+        """What is tried and kept: the mean of what has learned, or that itself."""
+        return cast(Network, self.mean.module) if self.learning.average > 1 else self.learner
 
     def learn(self) -> float:
         """Play one more batch and learn from it; the loss before.
@@ -53,8 +62,8 @@ class Imitator:
         done = self.batches / self.learning.batches
         rollout = self._play(done)
         loss = imitation_loss(rollout)
-        (loss + self.learning.access_decay * access_weight(self.network)).backward()  # type: ignore[no-untyped-call]
-        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.learning.clip)
+        (loss + self.learning.access_decay * access_weight(self.learner)).backward()  # type: ignore[no-untyped-call]
+        norm = torch.nn.utils.clip_grad_norm_(self.learner.parameters(), self.learning.clip)
         if not norm.isfinite():
             place = f"{self.recipe.name}, batch {self.batches + 1}"
             raise Mistake(f"{place}: got a gradient of {norm.item()}; expected a smaller rate.")
@@ -62,17 +71,20 @@ class Imitator:
             group["lr"] = rate(self.learning, done)
         self.optimiser.step()
         self.optimiser.zero_grad()
+        if self.learning.average > 1:
+            self.mean.update_parameters(self.learner)
         self.batches += 1
         return loss.item()
 
     def state(self) -> dict[str, Any]:
         """All of it that changes."""
-        weights, optimiser = self.network.state_dict(), self.optimiser.state_dict()
-        return {"network": weights, "optimiser": optimiser, "batches": self.batches}
+        parts = {"network": self.learner, "mean": self.mean, "optimiser": self.optimiser}
+        return {**{name: part.state_dict() for name, part in parts.items()}, "batches": self.batches}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Become as it was."""
-        self.network.load_state_dict(state["network"])
+        self.learner.load_state_dict(state["network"])
+        self.mean.load_state_dict(state["mean"])
         self.optimiser.load_state_dict(state["optimiser"])
         self.batches = state["batches"]
 
@@ -81,7 +93,7 @@ class Imitator:
         drawn = self._drawn(done)
         teachers = teachers_in(drawn, len(recipe.network.encoding().outputs), hindsight=learning.teacher.hindsight)
         luck = stream(recipe.seed, recipe.lessons[0].worlds.family.words(), "training moves", self.batches)
-        network = self.network
+        network = self.learner
         if learning.noise:
             network = Noisy(network, learning.noise, int(digest(recipe.seed, "noise", self.batches)[:8], 16))
         first_share, last_share = learning.teacher.share
@@ -97,6 +109,11 @@ class Imitator:
             draw_world(*turns[number % len(turns)], "training", self.recipe.seed, number)
             for number in range(first, first + learning.batch)
         ]
+
+
+def drawn_nearer(batches: int, mean: Tensor, latest: Tensor, count: Tensor) -> Tensor:
+    """A running mean over so many batches, of fewer at first, after `count` of them."""
+    return mean + (latest - mean) / torch.clamp(count + 1, max=batches)
 
 
 def imitation_loss(rollout: Rollout) -> Tensor:

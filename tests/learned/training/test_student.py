@@ -241,6 +241,39 @@ def test_a_gradient_is_no_longer_than_allowed(recipe: Callable[..., Recipe], mon
     assert norms == pytest.approx([0.01], rel=1e-3)
 
 
+def flat(network: Any) -> torch.Tensor:
+    """All weights in a row."""
+    return torch.cat([weight.detach().flatten() for weight in network.parameters()])
+
+
+def test_what_is_tried_is_the_mean_of_what_has_learned(recipe: Callable[..., Recipe]) -> None:
+    """Over three batches: the first, a half of the second, then a third of each; it learns as without."""
+    student, plain = learns(recipe(average=3)), learns(recipe())
+    weights = list[torch.Tensor]()
+    for _ in range(5):
+        assert student.learn() == plain.learn()
+        weights.append(flat(student.learner))
+        assert torch.equal(weights[-1], flat(plain.network))
+    expected = weights[0]
+    for latest, share in zip(weights[1:], (1 / 2, 1 / 3, 1 / 3, 1 / 3), strict=True):
+        expected = (1 - share) * expected + share * latest
+    torch.testing.assert_close(flat(student.network), expected)
+
+
+def test_a_mean_goes_on_where_it_was_left(recipe: Callable[..., Recipe]) -> None:
+    """A student that is restored ends with the same mean, bit for bit."""
+    whole, parted = learns(recipe(average=3)), learns(recipe(average=3))
+    for _ in range(4):
+        whole.learn()
+    for _ in range(2):
+        parted.learn()
+    resumed = learns(recipe(average=3))
+    resumed.restore(parted.state())
+    for _ in range(2):
+        resumed.learn()
+    assert torch.equal(flat(resumed.network), flat(whole.network))
+
+
 def test_weights_that_grow_beyond_all_numbers_are_told(recipe: Callable[..., Recipe]) -> None:
     """Before they are changed once more: what was learned until then is left."""
     student = learns(recipe())
