@@ -3,8 +3,8 @@
     pytest bench/timing/test_growth.py -s
 
 What a step must move at least: all links are read and written once, forward, and read once more with their gradients
-read and written on the way back. Beside it stands the rate at which NumPy copies as many bytes, read
-and written, in the same process. Each figure is the fastest of some rounds.
+read and written on the way back. Beside it stands the rate at which NumPy copies as many bytes, read and written, in
+the same process. Each figure is the fastest of some rounds.
 """
 
 from collections.abc import Callable
