@@ -8,6 +8,7 @@ the same process. Each figure is the fastest of some rounds.
 """
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -65,7 +66,7 @@ def test_rows(memory: str) -> None:
         x, state = torch.randn(INPUTS), dnc.blank()
         for _ in range(STEPS):
             _, state = dnc.step(x, state)
-        taken = fastest(lambda dnc=dnc, x=x, state=state: dnc.step(x, state))
+        taken = fastest(partial(dnc.step, x, state))
         print(f"{memory}, {rows} rows: {1e3 * taken:.3f} ms{_share(heads, 2 * rows**2 * FLOAT, taken)}")
 
 
@@ -97,10 +98,7 @@ def test_maps() -> None:
     print()
     for side, batch in MAPS:
         reward, kernels = torch.randn(batch, 4, side, side), 0.2 * torch.randn(4, 5, 3, 3)
-        few, many = (
-            fastest(torch.no_grad()(lambda k=k, reward=reward, kernels=kernels: fast(reward, kernels, k)))
-            for k in (20, 60)
-        )
+        few, many = (fastest(torch.no_grad()(partial(fast, reward, kernels, k))) for k in (20, 60))
         cell = (many - few) / 40 / reward[:, 0].numel()
         print(f"{batch} maps of {side}x{side}: {1e9 * cell:.2f} ns a cell and iteration")
 
