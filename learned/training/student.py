@@ -43,15 +43,18 @@ class Imitator:
         self.recipe, self.learning = recipe, learning
         self.learner = load(recipe.network)
         """What learns, and plays in training."""
-        self.mean = AveragedModel(self.learner, avg_fn=partial(drawn_nearer, learning.average))
         self.optimiser = OPTIMISERS[learning.optimiser](self.learner.parameters())
+        self.parts: dict[str, Any] = {"network": self.learner, "optimiser": self.optimiser}
+        """What has a state, by its name there; the mean of what has learned only where it is asked for."""
+        if learning.average > 1:
+            self.parts["mean"] = AveragedModel(self.learner, avg_fn=partial(drawn_nearer, learning.average))
         self.batches = 0
         """Learned from so far."""
 
     @property
     def network(self) -> Network:
         """What is tried and kept: the mean of what has learned, or that itself."""
-        return cast(Network, self.mean.module) if self.learning.average > 1 else self.learner
+        return cast(Network, self.parts["mean"].module) if "mean" in self.parts else self.learner
 
     def learn(self) -> float:
         """Play one more batch and learn from it; the loss before.
@@ -71,21 +74,19 @@ class Imitator:
             group["lr"] = rate(self.learning, done)
         self.optimiser.step()
         self.optimiser.zero_grad()
-        if self.learning.average > 1:
-            self.mean.update_parameters(self.learner)
+        if "mean" in self.parts:
+            self.parts["mean"].update_parameters(self.learner)
         self.batches += 1
         return loss.item()
 
     def state(self) -> dict[str, Any]:
         """All of it that changes."""
-        parts = {"network": self.learner, "mean": self.mean, "optimiser": self.optimiser}
-        return {**{name: part.state_dict() for name, part in parts.items()}, "batches": self.batches}
+        return {**{name: part.state_dict() for name, part in self.parts.items()}, "batches": self.batches}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Become as it was."""
-        self.learner.load_state_dict(state["network"])
-        self.mean.load_state_dict(state["mean"])
-        self.optimiser.load_state_dict(state["optimiser"])
+        for name, part in self.parts.items():
+            part.load_state_dict(state[name])
         self.batches = state["batches"]
 
     def _play(self, done: float) -> Rollout:
