@@ -4,14 +4,15 @@ What cannot play here, since a package is missing, stays where it is: nobody can
 """
 
 from collections.abc import Callable, Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 
+from fogbench.bench.playing.episode import SCHEMA
 from fogbench.bench.playing.store import CURRENT, KEYS, OUTDATED, WHO, current, load, new_part, parts, write_table
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Array
@@ -45,26 +46,29 @@ def _skipped(scenario: Scenario) -> set[Line]:
 
 
 def _move(folder: Path, source: str, target: str, goes: Callable[[pd.DataFrame], Array]) -> None:
-    @cache
-    def there() -> set[Line]:  # before the first row comes; mostly none does
-        return {line for part in parts(folder, target) for line in _lines(_told(part), TOLD)}
-
-    for part in parts(folder, source):
-        told = _told(part)
-        moved = goes(told)  # [n] bool
-        if moved.any():
-            rows, new = pq.read_table(part), moved & ~_among(told, TOLD, there())
-            if new.any():  # not those of a run that was killed here
-                write_table(new_part(folder, target), rows.filter(new))
-            if moved.all():
+    files = parts(folder, source)
+    tables = [load(part, TOLD) for part in files]
+    told = _together(tables)
+    moved = goes(told)  # [n] bool
+    if not moved.any():  # mostly
+        return
+    there = set(_lines(_together([load(part, TOLD) for part in parts(folder, target)]), TOLD))
+    new = moved & ~_among(told, TOLD, there)  # not those of a run that was killed here
+    ends = np.cumsum([len(table) for table in tables])[:-1]
+    for part, going, coming in zip(files, np.split(moved, ends), np.split(new, ends), strict=True):
+        if going.any():
+            rows = pq.read_table(part)
+            if coming.any():
+                write_table(new_part(folder, target), rows.filter(coming))
+            if going.all():
                 part.unlink()
             else:
-                write_table(part, rows.filter(~moved))
+                write_table(part, rows.filter(~going))
 
 
-def _told(part: Path) -> pd.DataFrame:
-    told: pd.DataFrame = load(part, TOLD).to_pandas()
-    return told
+def _together(tables: list[pa.Table]) -> pd.DataFrame:
+    rows: pd.DataFrame = pa.concat_tables([SCHEMA.empty_table().select(TOLD), *tables]).to_pandas()
+    return rows
 
 
 def _lines(rows: pd.DataFrame, names: list[str]) -> Iterator[Line]:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 
 from fogbench.bench.reporting.statistics import Estimate, difference, holm, mcnemar, mean, ratio_of_sums, share
 
@@ -39,6 +40,13 @@ def test_the_ends_of_wilsons_interval_solve_the_equation_that_defines_it(hits: l
     assert value - 1e-12 <= high <= 1
 
 
+@given(HITS)
+def test_the_interval_of_a_share_is_that_of_scipy(hits: list[bool]) -> None:
+    """Also where all or none are hits."""
+    interval = stats.binomtest(sum(hits), len(hits)).proportion_ci(0.95, method="wilson")
+    assert share(hits)[1:3] == pytest.approx((interval.low, interval.high), abs=1e-15)
+
+
 def test_nothing_has_no_estimate() -> None:
     """Without an episode there is no number, no interval, and n is 0."""
     nobody = bools(0, 0)
@@ -60,6 +68,21 @@ def test_the_bootstrap_interval_is_that_of_all_resamples() -> None:
     chosen = np.array(list(product(range(6), repeat=6)))  # [6^6, 6]
     low, high = np.percentile(over[chosen].sum(1) / under[chosen].sum(1), [2.5, 97.5])
     assert ratio_of_sums(over, under) == pytest.approx((22 / 21, low, high, 6), rel=0.05)
+
+
+@pytest.mark.parametrize("n", [2, 50, 300, 12_345])
+def test_the_bootstrap_interval_is_that_of_scipy(n: int) -> None:
+    """For one sample and for two, in as many batches as it takes: the same draws give the same interval."""
+    over, under = np.random.default_rng(n).random((2, n)) + 0.5
+    for estimate, samples, statistic in (
+        (mean(over), (over,), np.mean),
+        (ratio_of_sums(over, under), (over, under), lambda a, b, axis: a.sum(axis) / b.sum(axis)),
+    ):
+        interval = stats.bootstrap(
+            samples, statistic, paired=True, vectorized=True, n_resamples=1000, batch=max(1, 100_000 // n),
+            method="percentile", rng=0,
+        ).confidence_interval  # fmt: skip
+        assert estimate[1:3] == pytest.approx((interval.low, interval.high), rel=1e-14)
 
 
 def test_the_mean_leaves_out_what_is_not_a_number() -> None:
@@ -118,6 +141,13 @@ def test_mid_p_counts_the_observed_table_half_on_each_side(b: int, c: int) -> No
     assert mcnemar(b, c) == pytest.approx(expected)
     assert mcnemar(b, c) == mcnemar(c, b)
     assert 0 <= mcnemar(b, c) <= 1
+
+
+@given(st.integers(0, 5000), st.integers(0, 5000))
+def test_mid_p_of_many_pairs_is_that_of_scipy(b: int, c: int) -> None:
+    """By the distribution of scipy."""
+    below, at = stats.binom.cdf(min(b, c), b + c, 0.5), stats.binom.pmf(min(b, c), b + c, 0.5)
+    assert mcnemar(b, c) == pytest.approx(2 * below - at, rel=1e-9, abs=1e-300)
 
 
 def test_holm_adjusts_a_table_by_hand() -> None:
