@@ -9,11 +9,20 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fogbench.bench.playing.episode import SCHEMA
-from fogbench.bench.playing.store import CURRENT, KEYS, OUTDATED, WHO, current, load, new_part, parts, write_table
+from fogbench.bench.playing.store import (
+    CURRENT,
+    KEYS,
+    OUTDATED,
+    WHO,
+    current,
+    load,
+    new_part,
+    parts,
+    together,
+    write_table,
+)
 from fogbench.bench.reading.scenario import Scenario
 from fogbench.worlds.types import Array
 
@@ -48,11 +57,12 @@ def _skipped(scenario: Scenario) -> set[Line]:
 def _move(folder: Path, source: str, target: str, goes: Callable[[pd.DataFrame], Array]) -> None:
     files = parts(folder, source)
     tables = [load(part, TOLD) for part in files]
-    told = _together(tables)
+    told = together(tables, TOLD).to_pandas()
     moved = goes(told)  # [n] bool
     if not moved.any():  # mostly
         return
-    there = set(_lines(_together([load(part, TOLD) for part in parts(folder, target)]), TOLD))
+    others = together((load(part, TOLD) for part in parts(folder, target)), TOLD)
+    there = set(_lines(others.to_pandas(), TOLD))
     new = moved & ~_among(told, TOLD, there)  # not those of a run that was killed here
     ends = np.cumsum([len(table) for table in tables])[:-1]
     for part, going, coming in zip(files, np.split(moved, ends), np.split(new, ends), strict=True):
@@ -64,11 +74,6 @@ def _move(folder: Path, source: str, target: str, goes: Callable[[pd.DataFrame],
                 part.unlink()
             else:
                 write_table(part, rows.filter(~going))
-
-
-def _together(tables: list[pa.Table]) -> pd.DataFrame:
-    rows: pd.DataFrame = pa.concat_tables([SCHEMA.empty_table().select(TOLD), *tables]).to_pandas()
-    return rows
 
 
 def _lines(rows: pd.DataFrame, names: list[str]) -> Iterator[Line]:

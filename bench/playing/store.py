@@ -5,7 +5,7 @@ scenario as it is now, under the versions of packages that one asks for. A run m
 enters nothing, and takes back those whose keys hold again: see `fogbench.bench.playing.outdated`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -62,7 +62,12 @@ def _rows(files: Sequence[Path], columns: Sequence[str]) -> pa.Table:
     """All rows of some parts, with what tells whether they count."""
     needed = list(dict.fromkeys([*WHO, *columns, *KEYS]))
     tables = (load(part, needed).select(needed) for part in files)
-    return pa.concat_tables([SCHEMA.empty_table().select(needed), *tables])
+    return together(tables, needed)
+
+
+def together(tables: Iterable[pa.Table], columns: list[str]) -> pa.Table:
+    """The rows of any number of tables with these columns, even of none."""
+    return pa.concat_tables([SCHEMA.empty_table().select(columns), *tables])
 
 
 def _wanted(table: pa.Table, wanted: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:

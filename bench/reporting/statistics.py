@@ -4,11 +4,10 @@ Words used here
     n       episodes (or pairs of episodes) that a number is made of
     b, c    discordant pairs: episodes that only the agent solved; that only the reference solved
     p       probability of a difference at least as large if there were none
-
     Z       standard deviations from the mean to either end of a normal distribution's middle 95 %
 
 All intervals have a confidence of 95 %. The bootstrap starts from a fixed seed: the same episodes give the same bits.
-SciPy has the same, and the tests hold these against it; but it takes as long to load as a short report to write.
+SciPy has the same, and the tests hold these against it; but it takes most of a second to load.
 """
 
 from collections.abc import Callable
@@ -23,6 +22,8 @@ from numpy.typing import ArrayLike
 from fogbench.worlds.types import Array
 
 OUTSIDE = 0.05
+"""Probability of what an interval leaves out, half of it at each end."""
+
 Z = NormalDist().inv_cdf(1 - OUTSIDE / 2)
 RESAMPLES = 1000
 BATCH = 100_000

@@ -223,7 +223,7 @@ def play(desk: Any, rude: list[str], agents: dict[str, Any], workers: int = 2) -
         listed.append({desk.planner(f"{name}.py", act=act, **parts): {"label": name}})
         listed += [{agent: {**fields, "label": f"{agent} after {name}"}} for agent, fields in agents.items()]
     desk.scenario(agents=listed, budget=LIMIT, episodes=1, reference=f"astar after {rude[0]}")
-    ended = desk.fogbench("run", "s.yaml", "--workers", str(workers), seconds=1200, noisy=True)
+    ended = desk.fogbench("run", "s.yaml", "--workers", str(workers), seconds=400, noisy=True)
     assert ended.code in (0, 1), ended.err
     return desk.rows()
 
