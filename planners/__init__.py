@@ -11,6 +11,8 @@ PLANNERS = {
     "frontier": "fogbench.planners.frontier:Frontier",
     "rrt_star": "fogbench.planners.rrt_star:RrtStar",
     "random_walk": "fogbench.planners.random_walk:RandomWalk",
+    "breadth_first": "fogbench.planners.breadth_first:BreadthFirst",
+    "nearest_unvisited": "fogbench.planners.nearest_unvisited:NearestUnvisited",
 }
 """Planners that ship with the project, as `module:class`."""
 
@@ -27,10 +29,13 @@ class Reference(NamedTuple):
     """`module:class`; its defaults are played."""
 
 
-REFERENCES = {"grid": Reference("A*", "fogbench.planners.astar:AStar")}
+REFERENCES = {
+    "grid": Reference("A*", "fogbench.planners.astar:AStar"),
+    "graph": Reference("nearest unvisited", "fogbench.planners.nearest_unvisited:NearestUnvisited"),
+}
 """By the kind of world; other packages add theirs by the group `fogbench.references`."""
 
-JUDGES = {"grid": "fogbench.planners.grid_judge:GridJudge"}
+JUDGES = {"grid": "fogbench.planners.grid_judge:GridJudge", "graph": "fogbench.planners.graph_judge:GraphJudge"}
 """What knows which actions are right (see `judging`), by the kind of world; others by the group `fogbench.judges`."""
 
 SPEEDS = {"A* over an empty 512x512 map": "fogbench.planners.speed:search_empty_map"}

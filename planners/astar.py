@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from fogbench.planners.graph_astar import GraphAStarAgent
 from fogbench.planners.route import Route
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.maps.cells import KnownMap, fuse
@@ -21,14 +22,17 @@ STEPS = np.array(DELTAS, np.int64)  # [4, 2]
 class AStar(Settings):
     """Plans on the known map, unknown counts as free, and follows its path until a blocked cell cuts it."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph"})
 
     replan: Literal["cut", "change"] = "cut"
-    """Plan again when the path is cut (the reference), or whenever any reading of the known map has changed."""
+    """Plan again when the path is cut (the reference), or whenever any reading of the known map has changed; on a graph
+    it plans at each node."""
 
-    def start(self, task: Task, rng: np.random.Generator) -> "AStarAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> "AStarAgent | GraphAStarAgent":
         """A fresh agent; it needs no luck."""
         del rng
+        if task.kind == "graph":
+            return GraphAStarAgent(task)
         return AStarAgent(task, eager=self.replan == "change")
 
     def parameter_bytes(self) -> int:

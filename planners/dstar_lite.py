@@ -5,6 +5,7 @@ from typing import ClassVar
 import numpy as np
 
 from fogbench.planners.astar import glance
+from fogbench.planners.graph_dstar_lite import GraphDStarLiteAgent
 from fogbench.planners.incremental import EMPTY, descend, replan
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.maps.distances import FAR
@@ -15,12 +16,12 @@ from fogbench.worlds.types import Array, Cell, Move, Observation, Task
 class DStarLite(Settings):
     """Follows a shortest path on the known map, where unknown counts as free."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph"})
 
-    def start(self, task: Task, rng: np.random.Generator) -> "DStarLiteAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> "DStarLiteAgent | GraphDStarLiteAgent":
         """A fresh agent; it needs no luck."""
         del rng
-        return DStarLiteAgent(task, optimist=True)
+        return GraphDStarLiteAgent(task) if task.kind == "graph" else DStarLiteAgent(task, optimist=True)
 
     def parameter_bytes(self) -> int:
         """Nothing is learned."""

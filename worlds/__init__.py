@@ -12,6 +12,9 @@ FAMILIES = {
     "bug_trap": "fogbench.worlds.maps.families.bug_trap:BugTrap",
     "movingai": "fogbench.worlds.maps.families.movingai:MovingAI",
     "occupancy": "fogbench.worlds.maps.families.occupancy:Occupancy",
+    "random_graph": "fogbench.worlds.graph.families.random_graph:RandomGraph",
+    "fixed_graph": "fogbench.worlds.graph.families.fixed_graph:FixedGraph",
+    "graph_file": "fogbench.worlds.graph.families.graph_file:GraphFile",
 }
 """Map families, by the name they have under `maps:` in a scenario."""
 
@@ -39,6 +42,14 @@ KINDS = {
 maps: {blobs: {size: 12, obstacles: [8, 8], obstacle_size: [1, 3]}}
 sensor: {radius: 2, occlusion: true}
 budget: {steps: 40}
+""",
+    ),
+    "graph": Kind(
+        "fogbench.worlds.graph.conditions:GraphConditions",
+        unit="edges",
+        rehearsal="""
+maps: {random_graph: {nodes: 16, mean_degree: 3}}
+budget: {steps: 32}
 """,
     ),
 }

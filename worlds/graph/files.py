@@ -1,0 +1,72 @@
+"""Files of graphs, read by networkx; whatever is wrong with one is told in a line."""
+
+import io
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import networkx as nx
+import numpy as np
+
+from fogbench.worlds.files import Loaded
+from fogbench.worlds.graph.graph import Graph
+from fogbench.worlds.graph.networks import converted, parts
+from fogbench.worlds.mistake import Mistake, counted, shown
+from fogbench.worlds.types import MapError
+
+READERS: Mapping[str, Callable[[Any], Any]] = {".graphml": nx.read_graphml, ".edgelist": nx.read_edgelist}
+"""Of the files that end so."""
+
+
+class Read(NamedTuple):
+    """A graph of a file."""
+
+    graph: Graph
+    numbers: Mapping[str, int]
+    """Of the nodes, by their names in the file."""
+    notes: list[str]
+    """What of the file does not count."""
+
+
+def read_graph(file: Loaded, both_ways: bool) -> Read:
+    """The graph of a file.
+
+    Raises:
+        MapError: it is broken, directed, or in parts; one line.
+    """
+    try:
+        source = READERS[file.path.suffix](io.BytesIO(file.contents))
+    except Exception as error:  # noqa: BLE001  whatever a broken file does to its reader
+        raise MapError(f"{file.path}: {type(error).__name__}: {shown(str(error), 200)}") from None
+    if source.is_directed() and not both_ways:
+        expected = "edges that lead both ways, or `both_ways: true` to read them so"
+        raise MapError(f"{file.path}: got a directed graph; expected {expected}")
+    try:
+        graph, names = converted(source)
+    except Mistake as error:
+        raise MapError(f"{file.path}: {error}") from None
+    refuse_parts(file, graph, names)
+    return Read(graph, {str(name): k for k, name in enumerate(names)}, notes(source, graph))
+
+
+def refuse_parts(file: Loaded, graph: Graph, names: list[Any]) -> None:
+    """Go on with a connected graph.
+
+    Raises:
+        MapError: it has no two nodes, a node without an edge, or more than one part.
+    """
+    if graph.size < 2:
+        raise MapError(f"{file.path}: got {counted(graph.size, 'node')}; expected at least 2")
+    alone = np.flatnonzero(np.diff(graph.starts) == 0)
+    if len(alone):
+        first = shown(str(names[alone[0]]))
+        raise MapError(f"{file.path}: node {first}: got no edge; expected a path from each node to each other")
+    if (count := parts(graph)) > 1:
+        raise MapError(f"{file.path}: got {count} parts that no edge joins; expected one")
+
+
+def notes(source: Any, graph: Graph) -> list[str]:
+    """What of a graph of networkx does not count in ours."""
+    loops, edges = nx.number_of_selfloops(source), source.number_of_edges()
+    more = edges - loops - len(graph.lines)
+    told = [f"{counted(loops, 'edge')} from a node to itself {'is' if loops == 1 else 'are'} left out"] if loops else []
+    return [*told, *([f"of edges between the same nodes the shortest counts, {more} are left out"] if more else [])]
