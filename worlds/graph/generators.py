@@ -74,8 +74,10 @@ def shuffled(graph: Graph, rng: np.random.Generator) -> Graph:
 
 
 def _one(name: str, told: Mapping[str, Any]) -> Graph:
+    rows = {each.name for each in generators()[name] if each.kind is each.VAR_POSITIONAL}  # `*sizes`: told as a list
     try:
-        made = getattr(nx, name)(**told)
+        row = [part for each in rows for part in told[each]]
+        made = getattr(nx, name)(*row, **{each: told[each] for each in told.keys() - rows})
     except Exception as error:  # noqa: BLE001  a generator may raise anything about its parameters
         raise MapError(f"{name}: {type(error).__name__}: {shown(str(error), 200)}") from None
     if not isinstance(made, nx.Graph) or made.is_directed():
