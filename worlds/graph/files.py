@@ -13,7 +13,23 @@ from fogbench.worlds.graph.networks import converted, parts
 from fogbench.worlds.mistake import Mistake, counted, shown
 from fogbench.worlds.types import MapError
 
-READERS: Mapping[str, Callable[[Any], Any]] = {".graphml": nx.read_graphml, ".edgelist": nx.read_edgelist}
+
+def edge_list(contents: bytes) -> Any:
+    """A graph of networkx: on each line two nodes, and behind them nothing, a dictionary, or the edge's weight.
+
+    Raises:
+        Exception: whatever networkx says of another line.
+    """
+    lines = (line.partition(b"#")[0].split() for line in contents.splitlines())
+    first = next(filter(None, lines), [])
+    weighted = len(first) == 3 and not first[2].startswith(b"{")
+    return nx.read_edgelist(io.BytesIO(contents), data=(("weight", float),) if weighted else True)
+
+
+READERS: Mapping[str, Callable[[bytes], Any]] = {
+    ".graphml": lambda contents: nx.read_graphml(io.BytesIO(contents)),
+    ".edgelist": edge_list,
+}
 """Of the files that end so."""
 
 
@@ -34,7 +50,7 @@ def read_graph(file: Loaded, both_ways: bool) -> Read:
         MapError: it is broken, directed, or in parts; one line.
     """
     try:
-        source = READERS[file.path.suffix](io.BytesIO(file.contents))
+        source = READERS[file.path.suffix](file.contents)
     except Exception as error:  # noqa: BLE001  whatever a broken file does to its reader
         raise MapError(f"{file.path}: {type(error).__name__}: {shown(str(error), 200)}") from None
     if source.is_directed() and not both_ways:

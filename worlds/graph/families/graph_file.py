@@ -29,7 +29,7 @@ class GraphFile(Graphs):
     """
 
     file: MapFile
-    """A file that ends in `.graphml`, or in `.edgelist`: two nodes a line, and data that networkx can read."""
+    """A file that ends in `.graphml`, or in `.edgelist`: two nodes a line, and the edge's weight or a dictionary."""
     both_ways: bool = False
     """Whether the edges of a directed graph are read as leading both ways; else such a graph is refused."""
     start: str | None = None
