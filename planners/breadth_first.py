@@ -1,6 +1,5 @@
 """Breadth-first search by an agent that has to walk: the teacher of Khan et al. 2018 on graphs (section 4.3)."""
 
-from collections import deque
 from typing import ClassVar
 
 import numpy as np
@@ -9,9 +8,6 @@ from fogbench.planners.graph_search import first_steps, is_known
 from fogbench.worlds.graph.known import KnownGraph
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import Observation, Task
-
-POINTER = 8
-"""Bytes of an entry of a deque."""
 
 
 class BreadthFirst(Settings):
@@ -39,7 +35,8 @@ class BreadthFirstAgent:
         """Nothing is known yet."""
         self.goal: int = task.goal
         self.known = KnownGraph(task.extent)
-        self.queue: deque[int] = deque()
+        self.queue = np.empty(len(self.known.heads), np.int32)  # [N], nodes as they were first seen
+        self.first = self.last = 0  # of those that wait in it, and behind them
         self.expanded = 0
 
     def act(self, observation: Observation) -> int | None:
@@ -47,19 +44,22 @@ class BreadthFirstAgent:
         before = self.known.heads.copy()
         if self.known.update(observation):
             row = np.flatnonzero(np.isfinite(observation.view[:, 0]))
-            self.queue.extend(node for node in row.tolist() if not is_known(self.known.visited, before, node))
-        while self.queue and self.known.visited[self.queue[0]]:
-            self.queue.popleft()
-        target = self.goal if is_known(*self.known.arrays[:2], self.goal) else next(iter(self.queue), None)
-        if target is None:
+            fresh = [node for node in row.tolist() if not is_known(self.known.visited, before, node)]
+            self.queue[self.last : self.last + len(fresh)] = fresh
+            self.last += len(fresh)
+        while self.first < self.last and self.known.visited[self.queue[self.first]]:
+            self.first += 1
+        seen = is_known(*self.known.arrays[:2], self.goal)
+        if not seen and self.first == self.last:
             return None
+        target = self.goal if seen else int(self.queue[self.first])
         steps, expanded = first_steps(*self.known.arrays, observation.place, target)
         self.expanded += expanded
         return int(steps[0])
 
     def memory_bytes(self) -> int:
         """The known graph and the queue."""
-        return self.known.bytes + POINTER * len(self.queue)
+        return self.known.bytes + self.queue.nbytes
 
     def search_nodes(self) -> int:
         """Nodes expanded so far."""

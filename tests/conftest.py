@@ -7,11 +7,15 @@ import os
 from collections.abc import Callable, Generator
 from typing import Any, ClassVar, TypeVar
 
+import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import settings
 
 from fogbench.worlds.conditions import BudgetSettings
+from fogbench.worlds.graph.conditions import GraphConditions
+from fogbench.worlds.graph.networks import converted
+from fogbench.worlds.graph.world import GraphWorld
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.grid.rules import GridRules, SquareView
 from fogbench.worlds.grid.world import GridWorld
@@ -132,3 +136,68 @@ def picture() -> Callable[[str], Picture]:
 def draw(picture: Callable[[str], Picture], conditions: Callable[..., GridConditions]) -> Callable[..., GridWorld]:
     """Makes a grid world of a text and the fields of its conditions."""
     return lambda text, **fields: picture(text).sample(np.random.default_rng(0), 0, conditions(**fields))
+
+
+@pytest.fixture(scope="session")
+def on() -> Callable[..., GraphWorld]:
+    """Makes the world of a task on a graph of networkx whose nodes are numbers from 0, and fields of the conditions."""
+
+    def make(source: Any, start: int, goal: int, steps: Any = 100, slip: float = 0.0, distance: Any = None) -> Any:
+        block = {"rules": {"slip": slip}, "budget": {"steps": steps}, "tasks": {"distance": distance}}
+        ordered: Any = nx.Graph(**source.graph)
+        ordered.add_nodes_from(sorted(source.nodes(data=True)))
+        ordered.add_edges_from(source.edges(data=True))
+        return GraphConditions.model_validate(block).world(converted(ordered).graph, start, goal)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def weave() -> Callable[..., Any]:
+    """Makes a connected graph of networkx of 2 to `most` nodes, a tree and more edges.
+
+    The form `unit` has nothing else; `lengths` has whole numbers of which many are equal; `coordinates` has nodes
+    on the crossings of a square, and edges that are straight, or longer by half.
+    """
+
+    def make(rng: np.random.Generator, form: str, most: int = 12) -> Any:
+        size = int(rng.integers(2, most + 1))
+        graph: Any = nx.empty_graph(size)
+        graph.add_edges_from((node, int(rng.integers(node))) for node in range(1, size))
+        more = rng.integers(size, size=(int(rng.integers(size + 1)), 2)).tolist()
+        graph.add_edges_from((a, b) for a, b in more if a != b)
+        if form == "lengths":
+            nx.set_edge_attributes(graph, {edge: int(rng.integers(1, 4)) for edge in graph.edges}, "length")
+        if form == "coordinates":
+            side = int(np.ceil(np.sqrt(size)))
+            for node, place in enumerate(rng.permutation(side**2)[:size].tolist()):
+                graph.nodes[node]["x"], graph.nodes[node]["y"] = divmod(place, side)
+            for a, b, edge in graph.edges(data=True):
+                ends = [(graph.nodes[node]["x"], graph.nodes[node]["y"]) for node in (a, b)]
+                edge["length"] = float(np.hypot(*np.subtract(*ends)) * rng.choice([1, 1, 1.5]))
+        return graph
+
+    return make
+
+
+class Notes:
+    """A plain record of what an agent has seen of a graph, kept by networkx."""
+
+    def __init__(self) -> None:
+        """Nothing was seen yet."""
+        self.graph: Any = nx.Graph()
+        self.visited: set[int] = set()
+
+    def see(self, observation: Any) -> None:
+        """Write down the edges in view."""
+        self.visited.add(observation.place)
+        self.graph.add_node(observation.place)
+        for node, length in enumerate(observation.view[:, 0].tolist()):
+            if np.isfinite(length):
+                self.graph.add_edge(observation.place, node, length=length)
+
+
+@pytest.fixture
+def notes() -> type[Notes]:
+    """Keeps the plain record of an episode."""
+    return Notes

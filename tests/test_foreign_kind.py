@@ -97,7 +97,7 @@ def test_a_scenario_that_mixes_kinds_is_checked(command: Any) -> None:
     code, text = command("check", "mixed.yaml")
     assert code == 0, text
     assert text.count("6 episodes of 1 agent") == 3
-    assert "astar is skipped: it plays grid worlds, not ring" in text
+    assert "astar is skipped: it plays graph, grid worlds, not ring" in text
     assert "walker is skipped: it plays ring worlds, not grid" in text
 
 
@@ -165,7 +165,11 @@ def test_episodes_replay_and_are_drawn(variant: str, agent: str, suffix: str, co
     [
         ("track", "trak", "variants.ring: got trak; expected one of maps, kind, track, tasks, budget, sensor, rules"),
         ("track: {slip: 0.2}", "sensor: {radius: 1}", "variants.ring: got sensor; expected one of"),
-        ("kind: ring", "kind: rink", "variants.walls.kind: got rink; expected one of grid, ring. Did you mean ring?"),
+        (
+            "kind: ring",
+            "kind: rink",
+            "variants.walls.kind: got rink; expected one of grid, graph, ring. Did you mean ring?",
+        ),
         ("sensor: {radius", "kind: ring, sensor: {radius", "variants.grid: got sensor; expected one of"),
         (
             "{maps: {stations: {size: 9, cut: 0.5}}, track: {slip: 0.2}}",
@@ -218,7 +222,7 @@ def test_the_schema_and_the_list_have_it(command: Any) -> None:
     code, text = command("schema")
     schema = json.loads(text)
     assert code == 0
-    assert schema["properties"]["kind"]["anyOf"][0]["enum"] == ["grid", "ring"]
+    assert schema["properties"]["kind"]["anyOf"][0]["enum"] == ["grid", "graph", "ring"]
     assert {"track", "sensor"} <= schema["properties"].keys()
     _, text = command("list")
     assert "stations" in text

@@ -5,7 +5,7 @@ A new agent or map family needs a line in `AGENTS` or `FAMILIES` here; then all 
 """
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.metadata import Distribution
 from itertools import groupby
 from operator import attrgetter
@@ -13,6 +13,7 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
+import networkx as nx
 import numpy as np
 import pytest
 import torch
@@ -20,7 +21,7 @@ from PIL import Image
 
 from fogbench import learned, planners, worlds
 from fogbench.worlds.tables import named, registered
-from fogbench.worlds.types import AgentSettings, MapFamily, Observation, World
+from fogbench.worlds.types import AgentSettings, MapFamily, Observation, Task, World
 
 AGENTS: dict[str, list[dict[str, Any]]] = {
     "astar": [{}, {"replan": "change"}],
@@ -29,6 +30,8 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "frontier": [{}],
     "rrt_star": [{"iterations": 200}, {"planner": "RRTConnect", "iterations": 200}],
     "random_walk": [{}],
+    "breadth_first": [{}],
+    "nearest_unvisited": [{}],
     "macn": [
         {"checkpoint": "none"},
         {"checkpoint": "none", "reads": 1, "writes": 2, "memory_rows": 7, "links": False, "discount": 0.9},
@@ -42,6 +45,9 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "ring_net": [{"checkpoint": "none"}],
 }
 """Settings of every agent that ships, or that the foreign package adds, fast to play."""
+
+WAXMAN = {"generator": "waxman_graph", "parameters": {"beta": 0.9, "alpha": 0.15, "domain": [0, 0, 20, 20]}}
+"""Graphs whose nodes have coordinates and whose edges are as long as the line between them."""
 
 FAMILIES: dict[str, list[dict[str, Any]]] = {
     "blobs": [
@@ -57,6 +63,18 @@ FAMILIES: dict[str, list[dict[str, Any]]] = {
     ],
     "movingai": [{"map": "one.map"}, {"map": "two.map"}, {"map": "one.map", "scen": "two.map.scen"}],
     "occupancy": [{"map": "one.yaml"}, {"map": "two.yaml"}, {"map": "one.yaml", "downsample": 2}],
+    "random_graph": [
+        {"nodes": 40, "mean_degree": 2.5},
+        {"nodes": 40, "density": 0.06},
+        {"nodes": 40, **WAXMAN},
+        {"generator": "grid_2d_graph", "parameters": {"m": 5, "n": 8}},
+    ],
+    "fixed_graph": [
+        {"nodes": 40, "mean_degree": 2.5},
+        {"nodes": 40, "mean_degree": 2.5, "number": 1},
+        {"nodes": 40, "mean_degree": 2.5, "pairs": "training"},
+    ],
+    "graph_file": [{"file": "one.graphml"}, {"file": "one.graphml", "both_ways": True}, {"file": "two.edgelist"}],
     "stations": [{"size": 21}, {"size": 21, "cut": 0.7}],
 }
 """The same of every map family, all different; files are those of the fixture `folder`."""
@@ -82,15 +100,25 @@ ARENAS: dict[str, list[tuple[str, dict[str, Any], dict[str, Any]]]] = {
             {"radius": 2, "occlusion": True, "false_readings": 0.1, "collision": "blocked", "slip": 0.1},
         ),
     ],
+    "graph": [
+        ("random_graph", {"nodes": 40, "mean_degree": 2.5}, {}),
+        ("random_graph", {"nodes": 40, **WAXMAN}, {"slip": 0.2}),
+        ("random_graph", {"generator": "grid_2d_graph", "parameters": {"m": 4, "n": 10}}, {}),
+        ("fixed_graph", {"nodes": 40, "mean_degree": 2.5}, {"slip": 0.2}),
+    ],
     "ring": [("stations", {"size": 21, "cut": 0.7}, {"slip": slip}) for slip in (0.0, 0.2)],
 }
 """Where agents are tested, by the kind of world: families, their settings, and the fields of the conditions."""
 
 TERMS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "grid": ({"radius": 3}, {"radius": 2, "occlusion": True, "collision": "blocked"}),
+    "graph": ({}, {"slip": 0.2}),
     "ring": ({}, {"slip": 0.2}),
 }
 """Fields of the conditions that families are tested under, by the kind of world."""
+
+BLOCKS = {"graph": "rules", "ring": "track"}
+"""The block that has these fields, by the kind of world; those of grids are in several."""
 
 EPISODES = 3
 """Worlds of each arena."""
@@ -139,25 +167,30 @@ def play() -> Callable[..., Iterator[Decision]]:
 
 POLICIES = {**learned.LEARNED, **FOREIGN["fogbench.learned"]}
 MAPS = {**worlds.FAMILIES, **FOREIGN["fogbench.families"]}
-GRID_AGENTS = {**planners.PLANNERS, **learned.LEARNED}
+SHOWN = [*learned.ENCODINGS, *FOREIGN["fogbench.encodings"]]
 EXAMPLES = {**AGENTS, **FAMILIES}
-TABLES = {**GRID_AGENTS, **FOREIGN["fogbench.planners"], **POLICIES, **MAPS}
+TABLES = {**planners.PLANNERS, **learned.LEARNED, **FOREIGN["fogbench.planners"], **POLICIES, **MAPS}
+
+
+def of_grids(table: Mapping[str, str]) -> dict[str, str]:
+    """The entries of a table that are about cells."""
+    return {entry: target for entry, target in table.items() if "grid" in resolve_name(target).kinds}
+
 
 SETTINGS = {
     "agent": {entry: TABLES[entry] for entry in TABLES if entry not in MAPS},
     "policy": POLICIES,
     "family": MAPS,
     "settings": TABLES,
-    "grid_agent": GRID_AGENTS,
-    "grid_planner": planners.PLANNERS,
-    "grid_family": worlds.FAMILIES,
+    "grid_planner": of_grids(planners.PLANNERS),
+    "grid_family": of_grids(worlds.FAMILIES),
 }
 """The entries whose examples a test runs for, by the name of its argument; what is about cells takes those of grids."""
 
 NAMES = {
     "refereed": [*planners.REFERENCES, *FOREIGN["fogbench.references"]],
     "judged": [*planners.JUDGES, *FOREIGN["fogbench.judges"]],
-    "shown": [*learned.ENCODINGS, *FOREIGN["fogbench.encodings"]],
+    "shown": SHOWN,
     "family_name": [*MAPS],
 }
 """What a test runs for by name: kinds of world that have a reference, a judge, an encoding; and families."""
@@ -201,7 +234,7 @@ def settings(request: pytest.FixtureRequest, examples: Callable[[str], list[Any]
     return examples(entry)[number]
 
 
-agent = policy = family = grid_agent = grid_planner = grid_family = settings
+agent = policy = family = grid_planner = grid_family = settings
 """The same, of some of the entries."""
 
 
@@ -213,7 +246,7 @@ def under(conditions: Callable[..., Any]) -> Callable[..., Any]:
         if kind == "grid":
             return conditions(steps=steps, distance=distance, **fields)
         made = resolve_name(named(worlds.KINDS, "fogbench.kinds", kind).conditions)
-        return made(track=fields, tasks={"distance": distance}, budget={"steps": steps})
+        return made(**{BLOCKS[kind]: fields}, tasks={"distance": distance}, budget={"steps": steps})
 
     return make
 
@@ -260,11 +293,38 @@ def meetings(agent: AgentSettings, arena: Callable[[str], list[World]]) -> list[
     return found
 
 
+class Numbered:
+    """Stands in for the encoding of a kind that has none: an output is a recorded number, a viewpoint keeps nothing."""
+
+    def __init__(self, world: World) -> None:
+        """One output for each node of a world, as large as all others."""
+        self.world = world
+        self.outputs = tuple(map(str, range(int(world.task.extent[0]))))
+
+    def start(self, task: Task) -> "Numbered":
+        """A viewpoint."""
+        assert task.extent == self.world.task.extent
+        return self
+
+    def see(self, observation: Observation) -> None:
+        """Nothing is kept."""
+
+    def act(self, output: int) -> Any:
+        """The action of a number."""
+        return self.world.action(output)
+
+    def encode(self, viewpoints: Sequence["Numbered"]) -> tuple[()]:
+        """There is no network to be shown anything."""
+        return ()
+
+
 @pytest.fixture
-def encoding_of() -> Callable[[str], Any]:
+def encoding_of(arena: Callable[[str], list[World]]) -> Callable[[str], Any]:
     """The encoding of a kind, as the first learned agent that plays it is shown its worlds."""
 
     def find(kind: str) -> Any:
+        if kind not in SHOWN:
+            return Numbered(arena(kind)[0])
         made = [(resolve_name(target), AGENTS[name][0]) for name, target in POLICIES.items()]
         shown = [policy.model_validate(fields).encoding() for policy, fields in made if kind in policy.kinds]
         assert shown, f"no learned agent plays {kind}"
@@ -275,7 +335,7 @@ def encoding_of() -> Callable[[str], Any]:
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two small maps, `one` and `two`, in the formats of all families that read files."""
+    """Two small maps and graphs, `one` and `two`, in the formats of all families that read files."""
     place = tmp_path_factory.mktemp("maps")
     for seed, name in enumerate(("one", "two")):
         rng = np.random.default_rng(seed)
@@ -283,7 +343,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         free = np.argwhere(~blocked)
         _write_movingai(place / f"{name}.map", blocked, rng.choice(free, size=(40, 2)))
         _write_occupancy(place / f"{name}.yaml", blocked)
+        _write_graph(place / name, seed)
     return place
+
+
+def _write_graph(path: Path, seed: int) -> None:
+    graph = nx.waxman_graph(60, beta=0.7, alpha=0.2, domain=(0, 0, 20, 20), seed=seed)
+    assert nx.is_connected(graph)
+    nx.write_edgelist(graph, path.with_suffix(".edgelist"), data=False)
+    for _, place in graph.nodes(data=True):
+        place["x"], place["y"] = place.pop("pos")
+    nx.write_graphml(graph, path.with_suffix(".graphml"))
 
 
 def _write_movingai(path: Path, blocked: Any, ends: Any) -> None:

@@ -60,7 +60,7 @@ def test_memory_is_what_is_held(agent: AgentSettings, meetings: list[World], pla
 def test_nothing_leads_to_the_truth(agent: AgentSettings, meetings: list[World], play: Callable[..., Any]) -> None:
     """Neither what an agent is told nor anything it holds leads to the world or to its map."""
     for seed, world in enumerate(meetings):
-        truth = [thing for thing in parts(world) if isinstance(thing, np.ndarray)]
+        truth = [thing for thing in held(world) if isinstance(thing, np.ndarray)]
         assert truth
         for decision in play(world, agent, seed):
             told = [*world.task, *decision.observation, decision.agent]

@@ -2,10 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
+from fogbench.worlds.graph.graph import Graph, joined
+from fogbench.worlds.graph.world import GraphWorld
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.sight import look
 from fogbench.worlds.types import BLOCKED, FREE, AgentSettings, Cell, World
@@ -40,7 +43,29 @@ def other_ring(world: Any, places: set[int], rng: np.random.Generator) -> tuple[
     return replace(world, links=links), len(links) - len(seen)
 
 
-ELSEWHERE: dict[str, Callable[..., tuple[Any, int]]] = {"grid": other_grid, "ring": other_ring}
+def other_graph(world: GraphWorld, places: set[int], rng: np.random.Generator) -> tuple[GraphWorld, int]:
+    """The same of a graph: edges that touch no place are others, and nodes that were never in view lie elsewhere."""
+    graph = world.graph
+    rest = [node for node in range(graph.size) if node not in places]
+    edges = {(a, b): length for a, b, length in edges_of(graph) if {a, b} & places}
+    hidden = {(a, b): length for a, b, length in edges_of(graph) if not {a, b} & places}
+    drawn = [pair for pair in combinations(rest, 2) if pair not in hidden and rng.random() < 0.1]
+    edges |= {pair: float(rng.uniform(1, 30)) for pair in drawn} if not graph.unit else dict.fromkeys(drawn, 1.0)
+    coordinates = graph.coordinates.copy()  # [N, 2]
+    unseen = [*{*rest} - {node for place in places for node in graph.row(place).tolist()} - {world.task.goal}]
+    coordinates[unseen] += 5
+    other = joined(graph.size, np.array([*edges], np.int32), np.array([*edges.values()]), coordinates)
+    return replace(world, graph=other), len(hidden) + len(drawn)
+
+
+def edges_of(graph: Graph) -> list[tuple[int, int, float]]:
+    """All edges, the smaller end first, and their lengths."""
+    rows = [(node, graph.starts[node], graph.starts[node + 1]) for node in range(graph.size)]
+    found = [(node, int(graph.ends[k]), float(graph.lengths[k])) for node, a, b in rows for k in range(a, b)]
+    return [(a, b, length) for a, b, length in found if a < b]
+
+
+ELSEWHERE: dict[str, Callable[..., tuple[Any, int]]] = {"grid": other_grid, "graph": other_graph, "ring": other_ring}
 
 
 def test_what_was_never_seen_changes_nothing(
