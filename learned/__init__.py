@@ -4,10 +4,16 @@ LEARNED = {
     "macn": "fogbench.learned.macn:Macn",
     "vin": "fogbench.learned.vin:Vin",
     "cnn_memory": "fogbench.learned.cnn_memory:CnnMemory",
+    "macn_graph": "fogbench.learned.macn_graph:MacnGraph",
+    "vin_graph": "fogbench.learned.vin_graph:VinGraph",
+    "cnn_memory_graph": "fogbench.learned.cnn_memory_graph:CnnMemoryGraph",
 }
 """Policies that ship with the project, as `module:class`."""
 
-ENCODINGS = {"grid": "fogbench.learned.encoding.grid:GridEncoding"}
+ENCODINGS = {
+    "grid": "fogbench.learned.encoding.grid:GridEncoding",
+    "graph": "fogbench.learned.encoding.graph:GraphEncoding",
+}
 """What networks see of an episode, and what their outputs mean, by the kind of world (see `encoding.encoding`).
 
 Other packages add theirs by the group `fogbench.encodings`.

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from fogbench.learned.convolution.sizes import shapes
 from fogbench.learned.encoding.grid_sizes import CHANNELS, OUTPUTS
+from fogbench.learned.grid_policy import GridPolicy
 from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
 from fogbench.learned.shapes import Shapes, parts
@@ -13,8 +14,8 @@ LAST = len(OUTPUTS)
 """Channels of the last convolution: as many as there are moves, like Q."""
 
 
-class CnnMemory(Remembering):
-    """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
+class Convolving(Remembering):
+    """Four convolutions before a memory; a subclass says what it sees and does."""
 
     made_of: ClassVar[str] = "fogbench.learned.networks.cnn_memory:CnnMemoryNetwork"
 
@@ -24,8 +25,12 @@ class CnnMemory(Remembering):
     @property
     def planned(self) -> int:
         """Numbers from the last convolution."""
-        return LAST * prod(self.size)
+        return LAST * prod(self.plane)
 
     def shapes(self) -> Shapes:
         """Those of the convolutions before a memory."""
         return self.remembering_shapes(self.planned) | parts(convolutions=shapes(CHANNELS, self.channels, LAST))
+
+
+class CnnMemory(GridPolicy, Convolving):
+    """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""

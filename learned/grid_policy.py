@@ -2,12 +2,13 @@
 
 from typing import ClassVar, Literal
 
-from fogbench.learned.encoding.grid_sizes import Frame, by
-from fogbench.learned.policy import Policy, Size
+from fogbench.learned.encoding.grid_sizes import COMPASS, OUTPUTS, SEEN, Frame, by
+from fogbench.learned.policy import Size
+from fogbench.learned.showing import Showing
 from fogbench.worlds.mistake import Mistake
 
 
-class GridPolicy(Policy):
+class GridPolicy(Showing):
     """A network as an agent on grids."""
 
     kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
@@ -18,6 +19,21 @@ class GridPolicy(Policy):
     """Rows and columns of that window or map."""
     stitched: bool = False
     """Whether it sees the map known so far; else, the current view alone."""
+
+    @property
+    def plane(self) -> tuple[int, int]:
+        """The window or the map."""
+        return self.size
+
+    @property
+    def seen_count(self) -> int:
+        """Numbers of the sight and the compass."""
+        return SEEN + COMPASS
+
+    @property
+    def output_count(self) -> int:
+        """The moves."""
+        return len(OUTPUTS)
 
     @property
     def frame(self) -> Frame:

@@ -6,6 +6,7 @@ from typing import ClassVar
 from fogbench.learned.cnn_memory import LAST
 from fogbench.learned.convolution.sizes import shapes as convolutional_shapes
 from fogbench.learned.encoding.grid_sizes import CHANNELS, SIGHT
+from fogbench.learned.grid_policy import GridPolicy
 from fogbench.learned.memory import Remembering
 from fogbench.learned.policy import Size
 from fogbench.learned.shapes import Shapes, parts
@@ -14,18 +15,26 @@ from fogbench.learned.value_iteration.sizes import shapes as planner_shapes
 from fogbench.learned.vin import Planning
 
 
-class Macn(Planning, Remembering):
+class PlanningAndRemembering(Planning, Remembering):
+    """A VI module before a memory; a subclass says what it sees and does."""
+
+    @property
+    def planned(self) -> int:
+        """Numbers from the VI module: the values of all cells, and Q at the agent's."""
+        return prod(self.plane) + ACTIONS
+
+    def shapes(self) -> Shapes:
+        """Those of a VI module before a memory."""
+        return self.remembering_shapes(self.planned) | parts(planner=planner_shapes(CHANNELS))
+
+
+class Macn(GridPolicy, PlanningAndRemembering):
     """MACN: value iteration and four convolutions on what the sensor shows, then a DNC, an LSTM, a GRU or no memory."""
 
     made_of: ClassVar[str] = "fogbench.learned.networks.macn:MacnNetwork"
 
     channels: Size | None = 16
     """Of the first three of four convolutions on the cells around the agent; null: it is told the cells alone."""
-
-    @property
-    def planned(self) -> int:
-        """Numbers from the VI module: the values of all cells, and Q at the agent's."""
-        return prod(self.size) + ACTIONS
 
     @property
     def convolved(self) -> int:

@@ -9,10 +9,9 @@ from pydantic import Field
 
 from fogbench.learned.dnc.heads import Heads, controller_shapes
 from fogbench.learned.dnc.heads import shapes as dnc_shapes
-from fogbench.learned.encoding.grid_sizes import COMPASS, OUTPUTS, SEEN
-from fogbench.learned.grid_policy import GridPolicy
 from fogbench.learned.policy import Size
 from fogbench.learned.shapes import Shapes, linear, parts
+from fogbench.learned.showing import Showing
 
 HeadCount = Annotated[int, Field(ge=1, le=64)]
 """Of one sort; each write head has links from every row to every other."""
@@ -22,8 +21,9 @@ Links = Annotated[int, Field(ge=1, le=1024)]
 """Of a row."""
 
 
-class Remembering(GridPolicy):
+class Remembering(Showing):
     """A policy with a memory between what it sees and what it does."""
+
 
     memory: Literal["dnc", "lstm", "gru", "feedforward"] = "dnc"
     """A DNC, the LSTM of its controller alone, a GRU, or, as an ablation, a layer that remembers nothing."""
@@ -54,17 +54,17 @@ class Remembering(GridPolicy):
 
     def remembering_shapes(self, planned: int) -> Shapes:
         """The shapes of the features' weights, and of the memory's; `planned` numbers come from a planning module."""
-        features = linear(planned + SEEN + COMPASS, self.features)
+        features = linear(planned + self.seen_count, self.features)
         return parts(features=features, memory=self._memory_shapes())
 
     def _memory_shapes(self) -> Shapes:
         if self.memory == "lstm":
-            return lstm_shapes(self.features, len(OUTPUTS), self.hidden)
+            return lstm_shapes(self.features, self.output_count, self.hidden)
         if self.memory == "gru":
-            return gru_shapes(self.features, len(OUTPUTS), self.hidden)
+            return gru_shapes(self.features, self.output_count, self.hidden)
         if self.memory == "feedforward":
-            return feedforward_shapes(self.features, len(OUTPUTS), self.hidden)
-        return dnc_shapes(self.features, len(OUTPUTS), self.heads, self.hidden)
+            return feedforward_shapes(self.features, self.output_count, self.hidden)
+        return dnc_shapes(self.features, self.output_count, self.heads, self.hidden)
 
 
 def lstm_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:

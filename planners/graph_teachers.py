@@ -1,8 +1,7 @@
 """Right and wrong on many graphs in one call: the targets of `GraphJudge`, by its own kernels.
 
 Words used here
-    B, n      slots, and those that a call is about
-    N         nodes of the largest graph so far; a smaller one has none of the others
+    B, n, N    as in `fogbench.worlds.graph.known_batch`
 """
 
 from collections.abc import Sequence
@@ -10,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fogbench.planners.graph_search import nearest
-from fogbench.worlds.graph.batch import GraphObservations, widened
-from fogbench.worlds.graph.known import NONE, fuse
+from fogbench.worlds.graph.batch import GraphObservations
+from fogbench.worlds.graph.known_batch import KnownGraphs
 from fogbench.worlds.graph.world import GraphWorld
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array
@@ -22,42 +21,22 @@ class GraphTeachers:
 
     def __init__(self, slots: int) -> None:
         """Nobody yet."""
-        self.visited = np.zeros((slots, 0), np.bool_)  # [B, N]
-        self.heads = np.full((slots, 0), NONE, np.int32)  # [B, N]
-        self.links = np.zeros((slots, 0, 2), np.int32)
-        self.lengths = np.zeros((slots, 0))
-        self.used, self.places, self.goals = (np.zeros(slots, np.int64) for _ in range(3))
+        self.known = KnownGraphs(slots)
 
     def reset(self, slots: Array, worlds: Sequence[GraphWorld]) -> None:
         """Nothing is known yet of some worlds."""
-        size, ends = max(world.graph.size for world in worlds), max(len(world.graph.ends) for world in worlds)
-        self.visited, self.heads = widened(self.visited, size), widened(self.heads, size)
-        self.links, self.lengths = widened(self.links, ends), widened(self.lengths, ends)
-        self.visited[slots], self.heads[slots], self.used[slots] = False, NONE, 0
-        self.goals[slots] = [world.task.goal for world in worlds]
+        self.known.reset(slots, [world.task for world in worlds])
 
     def see(self, slots: Array, observations: GraphObservations) -> None:
         """Write what the agents see into the known graphs."""
-        self.places[slots] = observations.places
-        see_each(slots, observations.views, self.places, self.visited, self.heads, self.links, self.lengths, self.used)
+        self.known.see(slots, observations)
 
     def targets(self, slots: Array) -> Array:
         """Which nodes are right: [n, N] bool."""
-        told = np.zeros((len(slots), self.heads.shape[1]), np.bool_)
-        teach_each(slots, self.visited, self.heads, self.links, self.lengths, self.places, self.goals, told)
+        known = self.known
+        told = np.zeros((len(slots), known.heads.shape[1]), np.bool_)
+        teach_each(slots, known.visited, known.heads, known.links, known.lengths, known.places, known.goals, told)
         return told
-
-
-@kernel
-def see_each(
-    slots: Array, views: Array, places: Array, visited: Array, heads: Array, links: Array, lengths: Array, used: Array
-) -> None:  # fmt: skip
-    """Write the rows of views [n, N, C] into the known graphs of nodes that were not visited."""
-    for k in range(len(slots)):
-        slot = slots[k]
-        if not visited[slot, places[slot]]:
-            known = visited[slot], heads[slot], links[slot], lengths[slot]
-            used[slot] = fuse(*known, used[slot], places[slot], views[k, :, 0])
 
 
 @kernel

@@ -61,10 +61,10 @@ class Inputs(NamedTuple):
         """The same on a device."""
         return self if self.image.device.type == device else Inputs(*(part.to(device) for part in self))
 
-    def here(self, maps: Tensor) -> Tensor:
-        """What maps [B, C, H, W] say at the agents' cells: [B, C]."""
-        cells = self.cells[:, None, None].expand(-1, maps.shape[1], 1)  # [B, C, 1]
-        return maps.flatten(2).gather(2, cells)[..., 0]
+    @property
+    def beside(self) -> tuple[Tensor, Tensor]:
+        """What a memory is told as it is: [B, SEEN] and [B, COMPASS]."""
+        return self.sight.flatten(1), self.compass
 
 
 def encode(known: Known, frame: Frame) -> Inputs:

@@ -12,19 +12,34 @@ from fogbench.learned.cnn_memory import LAST
 from fogbench.learned.convolution.convolutions import Convolutions
 from fogbench.learned.encoding.grid_inputs import Inputs
 from fogbench.learned.encoding.grid_sizes import CHANNELS
-from fogbench.learned.macn import Macn
+from fogbench.learned.encoding.images import Images, here
+from fogbench.learned.macn import Macn, PlanningAndRemembering
 from fogbench.learned.networks.macn_single import Weights, in_lanes, see
 from fogbench.learned.networks.memory import RememberingNetwork
 from fogbench.learned.networks.vin import planner
 
 
-class MacnNetwork(RememberingNetwork):
+class PlanningNetwork(RememberingNetwork):
+    """A VI module before a memory."""
+
+    def __init__(self, settings: PlanningAndRemembering, beside: int = 0) -> None:
+        """Draw the weights; `beside` is how many numbers `made` gives beside the plan."""
+        super().__init__(settings, settings.planned + beside)
+        self.planner = planner(settings)
+
+    def plan(self, inputs: Images) -> Tensor:
+        """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
+        q, v = self.planner(inputs.image)
+        own = here(q, inputs.cells)  # [B, 4], of which the largest is V there
+        return torch.cat([v.flatten(1), own], 1) - own.amax(1, keepdim=True)
+
+
+class MacnNetwork(PlanningNetwork):
     """A VI module, and convolutions beside it, before a memory."""
 
     def __init__(self, settings: Macn) -> None:
         """Draw the weights."""
-        super().__init__(settings, settings.planned + settings.convolved)
-        self.planner = planner(settings)
+        super().__init__(settings, settings.convolved)
         channels = settings.channels
         self.convolutions = Convolutions(CHANNELS, channels, LAST) if channels else None
         self.settled: Weights | None = None
@@ -48,9 +63,3 @@ class MacnNetwork(RememberingNetwork):
         """The values, and the maps of the last convolution."""
         beside = () if self.convolutions is None else (self.convolutions(inputs.sight),)
         return self.plan(inputs), *beside
-
-    def plan(self, inputs: Inputs) -> Tensor:
-        """The values of all cells and of all moves, relative to the agent's cell: [B, H * W + 4]."""
-        q, v = self.planner(inputs.image)
-        here = inputs.here(q)  # [B, 4], of which the largest is V there
-        return torch.cat([v.flatten(1), here], 1) - here.amax(1, keepdim=True)

@@ -7,15 +7,13 @@ from torch import Tensor, nn
 
 from fogbench.learned.dnc.controller import Controller
 from fogbench.learned.dnc.dnc import DNC
-from fogbench.learned.encoding.grid_inputs import Inputs
-from fogbench.learned.encoding.grid_sizes import OUTPUTS
 from fogbench.learned.layers import linear
 from fogbench.learned.memory import Remembering, feedforward_shapes, gru_shapes, lstm_shapes
 from fogbench.learned.networks.network import Network
 
 
 class RememberingNetwork(Network):
-    """What is planned, with the sight and the compass as low-level features, into a memory."""
+    """What is planned, with what is seen as low-level features, into a memory."""
 
     def __init__(self, settings: Remembering, planned: int) -> None:
         """Draw the weights; `planned` is how many numbers `made` gives."""
@@ -23,16 +21,16 @@ class RememberingNetwork(Network):
         self.features = linear(settings.remembering_shapes(planned)["features.weight"])
         self.memory = remember(settings)
 
-    def see(self, inputs: Inputs) -> Tensor:
+    def see(self, inputs: Any) -> Tensor:
         """The features [B, F] of what is seen; they depend on nothing that is remembered."""
-        told = torch.cat([*self.made(inputs), inputs.sight.flatten(1), inputs.compass], 1)
+        told = torch.cat([*self.made(inputs), *inputs.beside], 1)
         return cast(Tensor, self.features(told)).relu()
 
-    def made(self, inputs: Inputs) -> tuple[Tensor, ...]:
+    def made(self, inputs: Any) -> tuple[Tensor, ...]:
         """What the network makes of what is seen, `planned` numbers [B, any] in all."""
         return (self.plan(inputs),)
 
-    def forward(self, inputs: Inputs, state: Any) -> tuple[Tensor, Any]:
+    def forward(self, inputs: Any, state: Any) -> tuple[Tensor, Any]:
         """One step."""
         return self.memory.step(self.see(inputs), state)
 
@@ -43,7 +41,7 @@ class RememberingNetwork(Network):
 
 def remember(settings: Remembering) -> "DNC | LSTM | GRU | FeedForward":
     """The memory of some settings, with weights drawn anew."""
-    inputs, outputs, hidden = settings.features, len(OUTPUTS), settings.hidden
+    inputs, outputs, hidden = settings.features, settings.output_count, settings.hidden
     if settings.memory == "lstm":
         return LSTM(inputs, outputs, hidden)
     if settings.memory == "gru":

@@ -4,18 +4,18 @@ from typing import cast
 
 from torch import Tensor
 
-from fogbench.learned.encoding.grid_inputs import Inputs
+from fogbench.learned.encoding.images import Images, here
 from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.layers import linear
 from fogbench.learned.networks.network import Network
 from fogbench.learned.value_iteration.value_iteration import ValueIteration
-from fogbench.learned.vin import Planning, Vin
+from fogbench.learned.vin import Planning, Reacting
 
 
 class VinNetwork(Network):
     """A VI module, and a linear map of Q at one cell."""
 
-    def __init__(self, settings: Vin) -> None:
+    def __init__(self, settings: Reacting) -> None:
         """Draw the weights."""
         super().__init__()
         self.planner = planner(settings)
@@ -26,14 +26,14 @@ class VinNetwork(Network):
         del batch
         return ()
 
-    def forward(self, inputs: Inputs, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
+    def forward(self, inputs: Images, state: tuple[()]) -> tuple[Tensor, tuple[()]]:
         """One step."""
         return cast(Tensor, self.output(self.plan(inputs))), state
 
-    def plan(self, inputs: Inputs) -> Tensor:
+    def plan(self, inputs: Images) -> Tensor:
         """Q at the agent's cell: [B, 4]."""
         q, _ = self.planner(inputs.image)
-        return inputs.here(q)
+        return here(q, inputs.cells)
 
 
 def planner(settings: Planning) -> ValueIteration:

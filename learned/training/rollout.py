@@ -107,7 +107,8 @@ def roll_out(
         targets = np.zeros((len(live), len(encoding.outputs)), np.bool_)
         if teachers:
             teachers.see(live, observations)
-            targets = teachers.targets(live)
+            told = teachers.targets(live)
+            targets[:, : told.shape[1]] = told  # a smaller world has fewer actions than the network has outputs
         inputs = viewpoints.encode(live)
         scores, state = network(inputs.to(settings.device), state)
         turn = Turn(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
