@@ -6,6 +6,7 @@ LEARNED = {
     "cnn_memory": "fogbench.learned.cnn_memory:CnnMemory",
     "macn_graph": "fogbench.learned.macn_graph:MacnGraph",
     "vin_graph": "fogbench.learned.vin_graph:VinGraph",
+    "macn_explored": "fogbench.learned.macn_explored:MacnExplored",
     "cnn_memory_graph": "fogbench.learned.cnn_memory_graph:CnnMemoryGraph",
 }
 """Policies that ship with the project, as `module:class`."""

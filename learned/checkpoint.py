@@ -31,7 +31,7 @@ NONE = "none"
 """In the place of a checkpoint: fresh weights."""
 
 
-WEIGHTLESS = frozenset({"iterations", "memory_rows"})
+WEIGHTLESS = frozenset({"iterations", "memory_rows", "most"})
 """Settings on a card that no weight depends on."""
 
 

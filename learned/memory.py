@@ -24,7 +24,6 @@ Links = Annotated[int, Field(ge=1, le=1024)]
 class Remembering(Showing):
     """A policy with a memory between what it sees and what it does."""
 
-
     memory: Literal["dnc", "lstm", "gru", "feedforward"] = "dnc"
     """A DNC, the LSTM of its controller alone, a GRU, or, as an ablation, a layer that remembers nothing."""
     features: Size = 256

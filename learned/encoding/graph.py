@@ -1,4 +1,4 @@
-"""What a network sees of a graph as in Khan et al. 2018: the row of its node, and the goal, each reshaped into a square.
+"""What a network sees of a graph, as in Khan et al. 2018: the row of its node, and the goal, each made a square.
 
 Words used here
     B, N, S    samples, nodes, the side of the square: S * S = N
@@ -24,11 +24,11 @@ class Shown(Protocol):
 
     @property
     def nodes(self) -> int:
-        """N"""
+        """N, a square number."""
 
     @property
     def plane(self) -> tuple[int, int]:
-        """S, S"""
+        """S and S."""
 
 
 class GraphInputs(NamedTuple):

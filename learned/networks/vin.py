@@ -4,8 +4,8 @@ from typing import cast
 
 from torch import Tensor
 
-from fogbench.learned.encoding.images import Images, here
 from fogbench.learned.encoding.grid_sizes import CHANNELS
+from fogbench.learned.encoding.images import Images, here
 from fogbench.learned.layers import linear
 from fogbench.learned.networks.network import Network
 from fogbench.learned.value_iteration.value_iteration import ValueIteration
