@@ -1,9 +1,10 @@
-"""From easy maps to the full ones (Khan et al. 2018, section 4.1: more and larger obstacles)."""
+"""From easy tasks to the full ones (Khan et al. 2018, section 4: more and larger obstacles, goals farther away)."""
 
 from typing import Any, cast
 
 from pydantic import ValidationError
 
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import MapFamily
 
@@ -25,6 +26,19 @@ def eased(easy: MapFamily, full: MapFamily, share: float) -> MapFamily:
         except ValidationError:
             continue
     return easy
+
+
+def farther(near: tuple[int, int], conditions: Any, share: float) -> Any:
+    """Conditions with goals that are `share` of the way, 0 to 1, from the bounds `near` to their own.
+
+    Raises:
+        Mistake: they have no bounds.
+    """
+    own = getattr(getattr(conditions, "tasks", None), "distance", None)
+    if own is None:
+        raise Mistake("got a curriculum over distance; expected `tasks: {distance: ...}`, where it ends")
+    tasks = conditions.tasks.model_copy(update={"distance": _between(near, own, share)})
+    return conditions.model_copy(update={"tasks": tasks})
 
 
 def _on_the_way(easy: MapFamily, full: MapFamily, share: float) -> MapFamily:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fogbench.learned.training.recipe import Recipe, Student
-from fogbench.worlds.settings import Positive, Probability, Settings
+from fogbench.worlds.settings import Positive, PositiveRange, Probability, Settings
 
 Rate = Annotated[float, Field(gt=0, le=1000)]
 """A number above 0."""
@@ -31,10 +31,12 @@ class Teacher(Settings):
 
 
 class Curriculum(Settings):
-    """Maps that grow harder over the first batches."""
+    """Tasks that grow harder over the first batches."""
 
-    easy: dict[str, Any]
+    easy: dict[str, Any] = Field(default_factory=dict)
     """Settings of the maps of every lesson at first: numbers grow to the lesson's own, the rest changes at the end."""
+    distance: PositiveRange | None = None
+    """Bounds of the optimum at first; they grow to the `tasks.distance` of each lesson."""
     until: Probability = 0.3
     """Part of the batches over which they grow."""
 

@@ -14,10 +14,10 @@ from torch.optim.swa_utils import AveragedModel
 
 from fogbench.learned.agent import load
 from fogbench.learned.networks.network import Network
-from fogbench.learned.training.curriculum import eased
+from fogbench.learned.training.curriculum import eased, farther
 from fogbench.learned.training.exploring import Explorer, Noisy
 from fogbench.learned.training.imitation import Imitation
-from fogbench.learned.training.recipe import Recipe
+from fogbench.learned.training.recipe import Recipe, Worlds
 from fogbench.learned.training.rollout import Drawn, Rollout, roll_out
 from fogbench.learned.training.trials import draw_world, teacher_in, teachers_in
 from fogbench.worlds.mistake import Mistake
@@ -35,12 +35,13 @@ class Imitator:
         Raises:
             Mistake: nobody can teach in its worlds as the recipe says.
         """
+        self.recipe, self.learning = recipe, learning
         for worlds, easy in recipe.lessons:
             try:
-                teacher_in(draw_world(worlds, easy, "training", 0, 0).world, hindsight=learning.teacher.hindsight)
+                first = draw_world(self._grown(worlds, 0.0), easy, "training", 0, 0).world
+                teacher_in(first, hindsight=learning.teacher.hindsight)
             except Mistake as error:
                 raise Mistake(f"{recipe.name}: {error}.") from None
-        self.recipe, self.learning = recipe, learning
         self.learner = load(recipe.network)
         """What learns, and plays in training."""
         self.optimiser = OPTIMISERS[learning.optimiser](self.learner.parameters())
@@ -105,11 +106,18 @@ class Imitator:
         """The worlds of the batch, of all lessons in turn."""
         learning, first = self.learning, self.batches * self.learning.batch
         grown = part(done, learning.curriculum.until if learning.curriculum else 0.0)
-        turns = [(worlds, eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons]
+        turns = [
+            (self._grown(worlds, grown), eased(easy, worlds.family, grown)) for worlds, easy in self.recipe.lessons
+        ]
         return [
             draw_world(*turns[number % len(turns)], "training", self.recipe.seed, number)
             for number in range(first, first + learning.batch)
         ]
+
+    def _grown(self, worlds: Worlds, grown: float) -> Worlds:
+        """Worlds whose goals are as far away as they are by now."""
+        near = self.learning.curriculum.distance if self.learning.curriculum else None
+        return worlds._replace(conditions=farther(near, worlds.conditions, grown)) if near else worlds
 
 
 def drawn_nearer(batches: int, mean: Tensor, latest: Tensor, count: Tensor) -> Tensor:

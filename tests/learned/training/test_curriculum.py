@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
-from fogbench.learned.training.curriculum import eased
+from fogbench.learned.training.curriculum import eased, farther
+from fogbench.worlds.graph.conditions import GraphConditions
+from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.maps.families.maze import Maze
 from fogbench.worlds.maps.families.rooms import Rooms
 from fogbench.worlds.maps.families.tunnel import Tunnel
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import MapFamily
 
 EASY = Blobs(size=32, obstacles=(2, 2), obstacle_size=(1, 2))
@@ -46,3 +49,19 @@ def test_a_maze_grows_by_odd_sizes() -> None:
 def test_all_on_the_way_is_valid(easy: MapFamily, full: MapFamily) -> None:
     """Whatever stands at its ends, a training never meets a family that cannot be."""
     assert all(isinstance(eased(easy, full, share), type(full)) for share in np.linspace(0, 1, 501))
+
+
+@pytest.mark.parametrize("kind", [GridConditions, GraphConditions])
+def test_goals_move_away_in_step(kind: type[GridConditions | GraphConditions]) -> None:
+    """Bounds of the optimum grow like any numbers; nothing else of the conditions changes."""
+    block = {"tasks": {"distance": [3, 21]}, "budget": {"steps": 30}, "rules": {"slip": 0.1}}
+    own = kind.model_validate(block)
+    for share, distance in ((0, (1, 2)), (0.5, (2, 12)), (1, (3, 21))):
+        assert farther((1, 2), own, share) == kind.model_validate({**block, "tasks": {"distance": distance}})
+
+
+def test_goals_move_away_to_bounds_alone() -> None:
+    """Without them nobody knows where they should end."""
+    with pytest.raises(Mistake) as error:
+        farther((1, 2), GridConditions.model_validate({"budget": {"steps": 30}}), 0.5)
+    assert str(error.value) == "got a curriculum over distance; expected `tasks: {distance: ...}`, where it ends"
