@@ -14,7 +14,7 @@ class GraphPolicy(Showing):
 
     kinds: ClassVar[frozenset[str]] = frozenset({"graph"})
 
-    nodes: Annotated[int, Field(ge=1, le=1024)]
+    nodes: Annotated[int, Field(ge=1, le=1024)] = 16
     """N, a square number; the network plays on graphs of so many nodes."""
 
     @property

@@ -47,4 +47,4 @@ class MacnExplored(Remembering):
         """Those of a reward of each node, of a score of each neighbour, and of a memory."""
         rewards = parts(inner=linear(FRONTIER, HIDDEN), outer=linear(HIDDEN, 1))
         scores = parts(inner=linear(TRAITS + 1, HIDDEN), outer=linear(HIDDEN, 1))
-        return {"step": (), "trust": ()} | self.remembering_shapes(1) | parts(rewards=rewards, scores=scores)
+        return {"step": (1,), "trust": (1,)} | self.remembering_shapes(1) | parts(rewards=rewards, scores=scores)

@@ -34,7 +34,7 @@ class ExploredNetwork(Network):
         super().__init__()
         shapes = settings.shapes()
         self.most = settings.most
-        self.step, self.trust = nn.Parameter(torch.zeros(())), nn.Parameter(torch.ones(()))
+        self.step, self.trust = nn.Parameter(torch.zeros(1)), nn.Parameter(torch.ones(1))
         self.features = linear(shapes["features.weight"])
         self.memory = remember(settings)
         self.rewards, self.scores = Perceptron(shapes, "rewards"), Perceptron(shapes, "scores")
