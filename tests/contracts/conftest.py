@@ -40,6 +40,13 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
         {"checkpoint": "none", "reading": "map", "size": [14, 14]},
     ],
     "vin": [{"checkpoint": "none"}, {"checkpoint": "none", "stitched": True, "reading": "map", "size": [14, 14]}],
+    "macn_graph": [
+        {"checkpoint": "none", "nodes": 36, "reads": 1, "writes": 4},
+        {"checkpoint": "none", "nodes": 36, "memory": "lstm"},
+    ],
+    "vin_graph": [{"checkpoint": "none", "nodes": 36}, {"checkpoint": "none", "nodes": 36, "discount": 0.9}],
+    "cnn_memory_graph": [{"checkpoint": "none", "nodes": 36}, {"checkpoint": "none", "nodes": 36, "memory": "lstm"}],
+    "macn_explored": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "feedforward", "most": 40}],
     "cnn_memory": [{"checkpoint": "none", "memory": "gru"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
     "walker": [{}],
     "ring_net": [{"checkpoint": "none"}],
@@ -101,10 +108,10 @@ ARENAS: dict[str, list[tuple[str, dict[str, Any], dict[str, Any]]]] = {
         ),
     ],
     "graph": [
-        ("random_graph", {"nodes": 40, "mean_degree": 2.5}, {}),
-        ("random_graph", {"nodes": 40, **WAXMAN}, {"slip": 0.2}),
-        ("random_graph", {"generator": "grid_2d_graph", "parameters": {"m": 4, "n": 10}}, {}),
-        ("fixed_graph", {"nodes": 40, "mean_degree": 2.5}, {"slip": 0.2}),
+        ("random_graph", {"nodes": 36, "mean_degree": 2.5}, {}),
+        ("random_graph", {"nodes": 36, **WAXMAN}, {"slip": 0.2}),
+        ("random_graph", {"generator": "grid_2d_graph", "parameters": {"m": 4, "n": 9}}, {}),
+        ("fixed_graph", {"nodes": 36, "mean_degree": 2.5}, {"slip": 0.2}),
     ],
     "ring": [("stations", {"size": 21, "cut": 0.7}, {"slip": slip}) for slip in (0.0, 0.2)],
 }
