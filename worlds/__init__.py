@@ -52,6 +52,17 @@ maps: {random_graph: {nodes: 16, mean_degree: 3}}
 budget: {steps: 32}
 """,
     ),
+    "robot": Kind(
+        "fogbench.worlds.robot.conditions:RobotConditions",
+        unit="m",
+        extra="robot",
+        maps="grid",
+        rehearsal="""
+maps: {blobs: {size: 60, obstacles: [6, 6], obstacle_size: [3, 9]}}
+sensor: {beams: 60}
+budget: {steps: 40}
+""",
+    ),
 }
 """Kinds of world, by the name they have under `kind:`; other packages add theirs by the group `fogbench.kinds`."""
 
