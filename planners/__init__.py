@@ -10,13 +10,14 @@ PLANNERS = {
     "dstar_lite": "fogbench.planners.dstar_lite:DStarLite",
     "frontier": "fogbench.planners.frontier:Frontier",
     "rrt_star": "fogbench.planners.rrt_star:RrtStar",
+    "hfn": "fogbench.planners.hfn:HFN",
     "random_walk": "fogbench.planners.random_walk:RandomWalk",
     "breadth_first": "fogbench.planners.breadth_first:BreadthFirst",
     "nearest_unvisited": "fogbench.planners.nearest_unvisited:NearestUnvisited",
 }
 """Planners that ship with the project, as `module:class`."""
 
-EXTRAS = {"rrt_star": "ompl"}
+EXTRAS = {"rrt_star": "ompl", "hfn": "robot"}
 """The extra of the project (`pip install ".[ompl]"`) that a planner needs."""
 
 
@@ -32,6 +33,7 @@ class Reference(NamedTuple):
 REFERENCES = {
     "grid": Reference("A*", "fogbench.planners.astar:AStar"),
     "graph": Reference("nearest unvisited", "fogbench.planners.nearest_unvisited:NearestUnvisited"),
+    "robot": Reference("A*", "fogbench.planners.astar:AStar"),
 }
 """By the kind of world; other packages add theirs by the group `fogbench.references`."""
 

@@ -9,12 +9,14 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from fogbench.planners.graph_astar import GraphAStarAgent
+from fogbench.planners.robot.agent import RobotAgent
+from fogbench.planners.robot.guides import AStarGuide
 from fogbench.planners.route import Route
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.maps.cells import KnownMap, fuse
 from fogbench.worlds.maps.distances import FAR
 from fogbench.worlds.settings import Settings
-from fogbench.worlds.types import BLOCKED, DELTAS, Array, Cell, Move, Observation, Task
+from fogbench.worlds.types import BLOCKED, DELTAS, Agent, Array, Cell, Move, Observation, Task
 
 STEPS = np.array(DELTAS, np.int64)  # [4, 2]
 
@@ -22,18 +24,21 @@ STEPS = np.array(DELTAS, np.int64)  # [4, 2]
 class AStar(Settings):
     """Plans on the known map, unknown counts as free, and follows its path until a blocked cell cuts it."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph", "robot"})
 
     replan: Literal["cut", "change"] = "cut"
     """Plan again when the path is cut (the reference), or whenever any reading of the known map has changed; on a graph
     it plans at each node."""
 
-    def start(self, task: Task, rng: np.random.Generator) -> "AStarAgent | GraphAStarAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; it needs no luck."""
         del rng
         if task.kind == "graph":
             return GraphAStarAgent(task)
-        return AStarAgent(task, eager=self.replan == "change")
+        eager = self.replan == "change"
+        if task.kind == "robot":
+            return RobotAgent(task, AStarGuide(task, eager=eager))
+        return AStarAgent(task, eager=eager)
 
     def parameter_bytes(self) -> int:
         """Nothing is learned."""

@@ -7,21 +7,27 @@ import numpy as np
 from fogbench.planners.astar import glance
 from fogbench.planners.graph_dstar_lite import GraphDStarLiteAgent
 from fogbench.planners.incremental import EMPTY, descend, replan
+from fogbench.planners.robot.agent import RobotAgent
+from fogbench.planners.robot.repairing import DStarLiteGuide
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.maps.distances import FAR
 from fogbench.worlds.settings import Settings
-from fogbench.worlds.types import Array, Cell, Move, Observation, Task
+from fogbench.worlds.types import Agent, Array, Cell, Move, Observation, Task
 
 
 class DStarLite(Settings):
     """Follows a shortest path on the known map, where unknown counts as free."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "graph", "robot"})
 
-    def start(self, task: Task, rng: np.random.Generator) -> "DStarLiteAgent | GraphDStarLiteAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; it needs no luck."""
         del rng
-        return GraphDStarLiteAgent(task) if task.kind == "graph" else DStarLiteAgent(task, optimist=True)
+        if task.kind == "graph":
+            return GraphDStarLiteAgent(task)
+        if task.kind == "robot":
+            return RobotAgent(task, DStarLiteGuide(task))
+        return DStarLiteAgent(task, optimist=True)
 
     def parameter_bytes(self) -> int:
         """Nothing is learned."""

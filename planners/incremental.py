@@ -73,7 +73,7 @@ def replan(
             one_step = _look_ahead(known, g, goal, optimist, s)
             if one_step != rhs[s]:
                 rhs[s] = one_step
-                U = _with_room(U)
+                U = with_room(U, len(STAR))
                 _update_vertex(g, rhs, U, at, start, new_k_m, s)
                 changed = True
     if not changed and not _unfinished(g, rhs, U, start, new_k_m):
@@ -98,17 +98,17 @@ def _compute_shortest_path(
 ) -> tuple[Array, int]:
     expanded = 0
     while _unfinished(g, rhs, U, start, k_m):
-        U = _with_room(U)
-        top = _entry_at(U, 1)
+        U = with_room(U, len(STAR))
+        top = entry_at(U, 1)
         k_old, u = top[:2], top[2:]
         k_new = _calculate_key(g, rhs, start, k_m, u)
         if k_old < k_new:
-            _settle(U, at, 1, (k_new[0], k_new[1], u[0], u[1]))
+            settle(U, at, 1, (k_new[0], k_new[1], u[0], u[1]))
             continue
         expanded += 1
         if g[u] > rhs[u]:
             g[u] = rhs[u]
-            _remove(U, at, u)
+            remove(U, at, u)
             for down, right in DELTAS:
                 s = (u[0] + down, u[1] + right)
                 if _inside(g, s) and rhs[s] > g[u] + 1 and _open(known, optimist, s):
@@ -128,7 +128,7 @@ def _compute_shortest_path(
 
 @kernel
 def _unfinished(g: Array, rhs: Array, U: Array, start: Cell, k_m: int) -> bool:
-    top_first = U[0, 0] and _entry_at(U, 1)[:2] < _calculate_key(g, rhs, start, k_m, start)
+    top_first = U[0, 0] and entry_at(U, 1)[:2] < _calculate_key(g, rhs, start, k_m, start)
     return bool(top_first or rhs[start] > g[start])
 
 
@@ -175,35 +175,36 @@ def _update_vertex(g: Array, rhs: Array, U: Array, at: Array, start: Cell, k_m: 
     """Keep in U, under its present key, a cell whose g and rhs differ, and no other; U has room for one more."""
     if g[s] == rhs[s]:
         if at[s]:
-            _remove(U, at, s)
+            remove(U, at, s)
         return
     k1, k2 = _calculate_key(g, rhs, start, k_m, s)
     if not at[s]:
         U[0, 0] += 1
         at[s] = U[0, 0]
-    _settle(U, at, at[s], (k1, k2, s[0], s[1]))
+    settle(U, at, at[s], (k1, k2, s[0], s[1]))
 
 
 @kernel
-def _remove(U: Array, at: Array, s: Cell) -> None:
+def remove(U: Array, at: Array, s: Cell) -> None:
+    """Take a cell out of the heap."""
     hole, end = at[s], U[0, 0]
     at[s] = 0
     U[0, 0] = end - 1
     if hole < end:
-        _settle(U, at, hole, _entry_at(U, end))
+        settle(U, at, hole, entry_at(U, end))
 
 
 @kernel
-def _settle(U: Array, at: Array, hole: int, entry: Entry) -> None:
+def settle(U: Array, at: Array, hole: int, entry: Entry) -> None:
     """Lay an entry where it belongs in the heap, given a row that is free for it or for those it displaces."""
-    while hole > 1 and entry < _entry_at(U, hole // 2):
+    while hole > 1 and entry < entry_at(U, hole // 2):
         _move(U, at, hole // 2, hole)
         hole //= 2
     child = 2 * hole
     while child <= U[0, 0]:
-        if child < U[0, 0] and _entry_at(U, child + 1) < _entry_at(U, child):
+        if child < U[0, 0] and entry_at(U, child + 1) < entry_at(U, child):
             child += 1
-        if entry < _entry_at(U, child):
+        if entry < entry_at(U, child):
             break
         _move(U, at, child, hole)
         hole, child = child, 2 * child
@@ -212,7 +213,8 @@ def _settle(U: Array, at: Array, hole: int, entry: Entry) -> None:
 
 
 @kernel
-def _entry_at(U: Array, row: int) -> Entry:
+def entry_at(U: Array, row: int) -> Entry:
+    """What stands in a row of the heap."""
     return int(U[row, 0]), int(U[row, 1]), int(U[row, 2]), int(U[row, 3])  # one type of key, compiled once
 
 
@@ -224,8 +226,8 @@ def _move(U: Array, at: Array, row: int, hole: int) -> None:
 
 
 @kernel
-def _with_room(U: Array) -> Array:
-    """U itself, or one twice as large, so that a cell and its four neighbours can enter."""
-    if U[0, 0] + len(STAR) < len(U):
+def with_room(U: Array, entries: int) -> Array:
+    """U itself, or one twice as large, so that as many cells can enter; EMPTY at most."""
+    if U[0, 0] + entries < len(U):
         return U
     return np.concatenate((U, np.zeros_like(U)))  # [2 * capacity, 4]

@@ -5,19 +5,20 @@ from typing import ClassVar
 import numpy as np
 
 from fogbench.planners.astar import glance
+from fogbench.planners.robot.memoryless import MemorylessRobot
 from fogbench.worlds.settings import Settings
-from fogbench.worlds.types import Cell, Move, Observation, Task
+from fogbench.worlds.types import Agent, Cell, Move, Observation, Task
 
 
 class Memoryless(Settings):
     """Plans anew at every step as if nothing but the current view had ever been seen."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "robot"})
 
-    def start(self, task: Task, rng: np.random.Generator) -> "MemorylessAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; it needs no luck."""
         del rng
-        return MemorylessAgent(task)
+        return MemorylessRobot(task) if task.kind == "robot" else MemorylessAgent(task)
 
     def parameter_bytes(self) -> int:
         """Nothing is learned."""

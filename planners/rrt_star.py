@@ -6,33 +6,28 @@ Words used here
     iteration  one pass of a planner's loop: it asks its termination condition once
 """
 
-from itertools import chain, pairwise, repeat
+from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from ompl import base, geometric, util
+from ompl import base
 from pydantic import Field
 
 from fogbench.planners.astar import glance
+from fogbench.planners.robot.agent import RobotAgent
+from fogbench.planners.robot.sampling import RrtStarGuide
 from fogbench.planners.route import Route
+from fogbench.planners.sampling import SEEDS, solved
 from fogbench.planners.segment import PARTS, clear, walk
 from fogbench.worlds.maps.cells import KnownMap
 from fogbench.worlds.settings import Settings
-from fogbench.worlds.types import BLOCKED, Array, Cell, Move, Observation, Task
-
-SEEDS = 2**31
-"""OMPL's seeds are the whole numbers from 1 to this."""
-
-STRAIGHT = 1 + 1e-9
-"""A path of up to this many straight distances is as short as can be, rounding apart."""
-
-util.noOutputHandler()
+from fogbench.worlds.types import BLOCKED, Agent, Array, Cell, Move, Observation, Task
 
 
 class RrtStar(Settings):
     """Plans in the plane, unknown counts as free, and follows its path in moves until a blocked cell cuts it."""
 
-    kinds: ClassVar[frozenset[str]] = frozenset({"grid"})
+    kinds: ClassVar[frozenset[str]] = frozenset({"grid", "robot"})
 
     # Left out: PRM and PRM* hang with checks in Python, FMT and BFMT count samples, BIT* leaks the map with every tree
     # that is counted, and AORRTC has no tree to count.
@@ -42,9 +37,13 @@ class RrtStar(Settings):
     """OMPL's name of the planner, with OMPL's parameters; those named RRT* are tuned in `plan`."""
     iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 2000
     """Iterations of a plan, after which the best path so far is followed."""
+    space: Literal["plane", "se2"] = "plane"
+    """What a robot plans in: points, or poses, whose headings count as well; on a grid it is the plane."""
 
-    def start(self, task: Task, rng: np.random.Generator) -> "RrtStarAgent":
+    def start(self, task: Task, rng: np.random.Generator) -> Agent:
         """A fresh agent; every plan draws its seed from `rng`."""
+        if task.kind == "robot":
+            return RobotAgent(task, RrtStarGuide(task, self.planner, self.iterations, self.space, rng))
         return RrtStarAgent(task, self, rng)
 
     def parameter_bytes(self) -> int:
@@ -120,20 +119,13 @@ def plan(known: Array, start: Cell, goal: Cell, settings: RrtStar, seed: int) ->
         settings: the planner and its iterations.
         seed: from 1 to SEEDS.
     """
-    util.RNG.setSeed(seed)
     information = _information(known)
-    problem = _problem(information, start, goal)
-    planner = getattr(geometric, settings.planner)(information)
-    if isinstance(planner, geometric.RRTstar):
-        planner.setKNearest(False)  # neighbours in a ball: a sixth of the time of the k nearest
-        planner.setNewStateRejection(True)  # branch and bound: half the time again, and shorter paths
-    planner.setProblemDefinition(problem)
-    planner.setup()
-    planner.solve(base.PlannerTerminationCondition(chain(repeat(False, settings.iterations), repeat(True)).__next__))
-    tree = base.PlannerData(information)
-    planner.getPlannerData(tree)
-    states = _states(problem.getSolutionPath())
-    return Plan(states, _cells(known, states), tree.numVertices(), problem.hasExactSolution())
+    ends = [information.allocState(), information.allocState()]
+    for state, cell in zip(ends, (start, goal), strict=True):
+        state[0], state[1] = float(cell[0]), float(cell[1])
+    path, vertices, exact = solved(information, ends, settings.planner, settings.iterations, seed)
+    states = np.array([(state[0], state[1]) for state in path], np.float64).reshape(-1, 2)  # [n, 2]
+    return Plan(states, _cells(known, states), vertices, exact)
 
 
 def _information(known: Array) -> Any:
@@ -149,19 +141,6 @@ def _information(known: Array) -> Any:
     information.setMotionValidator(_FreeMotions(information, known))
     information.setup()
     return information
-
-
-def _problem(information: Any, start: Cell, goal: Cell) -> Any:
-    """From centre to centre, as short as possible; a straight path ends the search."""
-    ends = [information.allocState(), information.allocState()]
-    for state, cell in zip(ends, (start, goal), strict=True):
-        state[0], state[1] = float(cell[0]), float(cell[1])
-    problem = base.ProblemDefinition(information)
-    problem.setStartAndGoalStates(*ends)
-    shortest = base.PathLengthOptimizationObjective(information)
-    shortest.setCostThreshold(base.Cost(STRAIGHT * information.distance(*ends)))
-    problem.setOptimizationObjective(shortest)
-    return problem
 
 
 class _FreeStates(base.StateValidityChecker):  # type: ignore[misc]  # OMPL has no types
@@ -180,11 +159,6 @@ class _FreeMotions(base.MotionValidator):  # type: ignore[misc]  # OMPL has no t
 
     def checkMotion(self, start: Any, end: Any) -> bool:  # noqa: N802  # OMPL calls it so
         return clear(self.known, start[0], start[1], end[0], end[1])
-
-
-def _states(path: Any) -> Array:
-    states = path.getStates() if path else []
-    return np.array([(state[0], state[1]) for state in states], np.float64).reshape(-1, 2)  # [n, 2]
 
 
 def _cells(known: Array, states: Array) -> Array:

@@ -20,6 +20,7 @@ import torch
 from PIL import Image
 
 from fogbench import learned, planners, worlds
+from fogbench.worlds.robot.conditions import RobotConditions
 from fogbench.worlds.tables import named, registered
 from fogbench.worlds.types import AgentSettings, MapFamily, Observation, Task, World
 
@@ -28,7 +29,8 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "memoryless": [{}],
     "dstar_lite": [{}],
     "frontier": [{}],
-    "rrt_star": [{"iterations": 200}, {"planner": "RRTConnect", "iterations": 200}],
+    "rrt_star": [{"iterations": 200}, {"planner": "RRTConnect", "iterations": 200, "space": "se2"}],
+    "hfn": [{}],
     "random_walk": [{}],
     "breadth_first": [{}],
     "nearest_unvisited": [{}],
@@ -112,6 +114,19 @@ ARENAS: dict[str, list[tuple[str, dict[str, Any], dict[str, Any]]]] = {
         ("random_graph", {"nodes": 36, **WAXMAN}, {"slip": 0.2}),
         ("random_graph", {"generator": "grid_2d_graph", "parameters": {"m": 4, "n": 9}}, {}),
         ("fixed_graph", {"nodes": 36, "mean_degree": 2.5}, {"slip": 0.2}),
+    ],
+    "robot": [
+        ("blobs", {"size": 90, "obstacles": [8, 14], "obstacle_size": [3, 12]}, {"sensor": {"beams": 90}}),
+        ("maze", {"size": 9}, {"walls": {"cell": 1.0, "split": 10}, "rules": {"physics": "unicycle"}}),
+        (
+            "blobs",
+            {"size": 90, "obstacles": [8, 14], "obstacle_size": [3, 12]},
+            {
+                "sensor": {"beams": 60, "range": 4.0, "noise": 0.02, "dropped": 0.05},
+                "rules": {"collision": "blocked", "physics": "unicycle"},
+                "tasks": {"clearance": 0.4},
+            },
+        ),
     ],
     "ring": [("stations", {"size": 21, "cut": 0.7}, {"slip": slip}) for slip in (0.0, 0.2)],
 }
@@ -247,11 +262,14 @@ agent = policy = family = grid_planner = grid_family = settings
 
 @pytest.fixture
 def under(conditions: Callable[..., Any]) -> Callable[..., Any]:
-    """Makes conditions of a kind of their fields, those of all blocks in one."""
+    """Makes conditions of a kind of their fields: of robots the blocks, of others the fields of all blocks in one."""
 
     def make(kind: str, steps: Any = 40, distance: Any = None, **fields: Any) -> Any:
         if kind == "grid":
             return conditions(steps=steps, distance=distance, **fields)
+        if kind == "robot":
+            tasks = {"distance": distance, **fields.pop("tasks", {})}
+            return RobotConditions.model_validate({**fields, "tasks": tasks, "budget": {"steps": steps}})
         made = resolve_name(named(worlds.KINDS, "fogbench.kinds", kind).conditions)
         return made(**{BLOCKS[kind]: fields}, tasks={"distance": distance}, budget={"steps": steps})
 

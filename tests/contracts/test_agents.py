@@ -12,7 +12,7 @@ from fogbench.worlds.types import AgentSettings, Move, World
 
 Play = Callable[..., Any]
 
-ACTIONS = {"grid": "Move", "graph": "int", "ring": "Way"}
+ACTIONS = {"grid": "Move", "graph": "int", "robot": "Waypoint", "ring": "Way"}
 """The type of what an agent may answer, besides None, by the kind of world."""
 
 

@@ -35,8 +35,10 @@ def test_a_reference_plays_its_kind_without_settings(refereed: str, arena: Arena
     settings = _reference(refereed)
     assert refereed in settings.kinds
     for world in arena(refereed):
-        judge = judge_of(refereed)(world.task)
+        judge = judge_of(refereed)(world.task) if judge_of(refereed) else None
         for _, observation, action, _, _ in play(world, settings, 0):
+            if judge is None:
+                continue
             judge.see(observation)
             if action is not None:
                 assert not judge.judge(action).strictly_wrong

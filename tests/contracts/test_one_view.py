@@ -11,7 +11,9 @@ from fogbench.worlds.graph.graph import Graph, joined
 from fogbench.worlds.graph.world import GraphWorld
 from fogbench.worlds.grid.world import GridWorld
 from fogbench.worlds.maps.sight import look
-from fogbench.worlds.types import BLOCKED, FREE, AgentSettings, Cell, World
+from fogbench.worlds.robot.known import RobotMap
+from fogbench.worlds.robot.world import RobotState, RobotWorld
+from fogbench.worlds.types import BLOCKED, FREE, UNKNOWN, AgentSettings, Cell, World
 
 
 def other_grid(world: GridWorld, places: set[Cell], rng: np.random.Generator) -> tuple[GridWorld, int]:
@@ -65,7 +67,28 @@ def edges_of(graph: Graph) -> list[tuple[int, int, float]]:
     return [(a, b, length) for a, b, length in found if a < b]
 
 
-ELSEWHERE: dict[str, Callable[..., tuple[Any, int]]] = {"grid": other_grid, "graph": other_graph, "ring": other_ring}
+def other_robot(world: RobotWorld, places: set[Any], rng: np.random.Generator) -> tuple[RobotWorld, int]:
+    """The same of a robot's walls: cells that no beam has crossed or met, and that the body was nowhere near."""
+    known, luck = RobotMap(world.task), np.random.default_rng(0)
+    rows, columns = np.indices(world.cells.shape) * 0.1 + 0.05  # [H, W]
+    near = np.zeros(world.cells.shape, np.bool_)
+    exact = world.task.sensor.lidar.model_copy(update={"noise": 0.0, "dropped": 0.0})
+    truth = replace(world, task=world.task._replace(sensor=world.task.sensor._replace(lidar=exact)))
+    for place in places:
+        known.update(truth.sense(RobotState(0, place, place, 0.0, 0.0, None, blocked=False), luck))
+        near |= (columns - place[0]) ** 2 + (rows - place[1]) ** 2 < 0.6**2
+    changed = (known.cells == UNKNOWN) & ~near & (rng.random(near.shape) < 0.5)
+    cells = np.where(changed, FREE + BLOCKED - world.cells, world.cells).astype(np.uint8)
+    cells.setflags(write=False)
+    return replace(world, cells=cells), int(changed.sum())
+
+
+ELSEWHERE: dict[str, Callable[..., tuple[Any, int]]] = {
+    "grid": other_grid,
+    "graph": other_graph,
+    "robot": other_robot,
+    "ring": other_ring,
+}
 
 
 def test_what_was_never_seen_changes_nothing(

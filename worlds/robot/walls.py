@@ -43,16 +43,20 @@ def rectangles(cells: Array) -> Array:
 
 
 @kernel
-def touches(cells: Array, x: float, y: float, radius: float) -> bool:
-    """Whether a disc touches a blocked cell, or the border; all lengths in cells."""
+def clearance(cells: Array, x: float, y: float, most: float) -> float:
+    """The way from a point to the nearest blocked cell or the border, and `most` at most; all lengths in cells."""
     height, width = cells.shape
-    if x < radius or y < radius or x > width - radius or y > height - radius:
-        return True
-    for row in range(max(0, int(y - radius)), min(height, int(y + radius) + 1)):
-        for column in range(max(0, int(x - radius)), min(width, int(x + radius) + 1)):
+    nearest: float = min(x, y, width - x, height - y, most)
+    for row in range(max(0, int(y - most)), min(height, int(y + most) + 1)):
+        for column in range(max(0, int(x - most)), min(width, int(x + most) + 1)):
             if cells[row, column] == BLOCKED:
                 across = max(column - x, 0.0, x - column - 1)
                 along = max(row - y, 0.0, y - row - 1)
-                if across * across + along * along < radius * radius:
-                    return True
-    return False
+                nearest = min(nearest, np.sqrt(across * across + along * along))
+    return nearest
+
+
+@kernel
+def touches(cells: Array, x: float, y: float, radius: float) -> bool:
+    """Whether a disc touches a blocked cell, or the border; all lengths in cells."""
+    return clearance(cells, x, y, radius) < radius
