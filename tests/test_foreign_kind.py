@@ -97,7 +97,7 @@ def test_a_scenario_that_mixes_kinds_is_checked(command: Any) -> None:
     code, text = command("check", "mixed.yaml")
     assert code == 0, text
     assert text.count("6 episodes of 1 agent") == 3
-    assert "astar is skipped: it plays graph, grid worlds, not ring" in text
+    assert "astar is skipped: it plays graph, grid, robot worlds, not ring" in text
     assert "walker is skipped: it plays ring worlds, not grid" in text
 
 
@@ -168,7 +168,7 @@ def test_episodes_replay_and_are_drawn(variant: str, agent: str, suffix: str, co
         (
             "kind: ring",
             "kind: rink",
-            "variants.walls.kind: got rink; expected one of grid, graph, ring. Did you mean ring?",
+            "variants.walls.kind: got rink; expected one of grid, graph, robot, ring. Did you mean ring?",
         ),
         ("sensor: {radius", "kind: ring, sensor: {radius", "variants.grid: got sensor; expected one of"),
         (
@@ -222,7 +222,7 @@ def test_the_schema_and_the_list_have_it(command: Any) -> None:
     code, text = command("schema")
     schema = json.loads(text)
     assert code == 0
-    assert schema["properties"]["kind"]["anyOf"][0]["enum"] == ["grid", "graph", "ring"]
+    assert schema["properties"]["kind"]["anyOf"][0]["enum"] == ["grid", "graph", "robot", "ring"]
     assert {"track", "sensor"} <= schema["properties"].keys()
     _, text = command("list")
     assert "stations" in text
