@@ -64,7 +64,8 @@ def joined(size: int, edges: Array, lengths: Array | None = None, coordinates: A
     """
     weights = np.ones(len(edges)) if lengths is None else lengths
     arrays = rows(size, np.ascontiguousarray(edges, np.int32), weights)
-    graph = Graph(*arrays, np.empty((size, 0)) if coordinates is None else coordinates, bool((weights == 1).all()))
+    unit = lengths is None or bool((lengths == 1).all())
+    graph = Graph(*arrays, np.empty((size, 0)) if coordinates is None else coordinates, unit)
     for array in (graph.starts, graph.ends, graph.lengths, graph.coordinates):
         array.setflags(write=False)
     return graph

@@ -39,8 +39,9 @@ class KnownGraph:
         place, view = observation.place, observation.view
         if self.visited[place]:
             return False
-        self._make_room(2 * int(np.isfinite(view[:, 0]).sum()))
-        self.used = fuse(self.visited, self.heads, self.links, self.lengths, self.used, place, view[:, 0])
+        row = view[:, 0]
+        self._make_room(2 * degree(row))
+        self.used = fuse(self.visited, self.heads, self.links, self.lengths, self.used, place, row)
         if view.shape[1] > 1:
             seen = view[:, 1:]
             self.coordinates = np.minimum(self.coordinates, seen) if self.coordinates.size else seen.copy()
@@ -67,6 +68,15 @@ class KnownGraph:
             links, lengths = np.empty((room, 2), np.int32), np.empty(room)
             links[: self.used], lengths[: self.used] = self.links[: self.used], self.lengths[: self.used]
             self.links, self.lengths = links, lengths
+
+
+@kernel
+def degree(row: Array) -> int:
+    """How many nodes a row [N] of a view shows edges to."""
+    count = 0
+    for length in row:
+        count += length < np.inf
+    return count
 
 
 @kernel

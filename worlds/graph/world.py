@@ -66,7 +66,8 @@ class GraphWorld:
         """The edges of the agent's node, and coordinates where there are any; nothing is drawn."""
         del rng
         graph = self.graph
-        view = np.full((graph.size, 1 + graph.coordinates.shape[1]), np.inf)
+        view = np.empty((graph.size, 1 + graph.coordinates.shape[1]))
+        view.fill(np.inf)
         look(graph.starts, graph.ends, graph.lengths, graph.coordinates, state.place, self.task.goal, view)
         view.setflags(write=False)
         return Observation(state.step, state.place, view[:], state.blocked)
