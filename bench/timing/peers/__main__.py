@@ -17,12 +17,13 @@ from rich.table import Table
 from searching import searches
 from turns import Turns
 from walking import walks
+from wandering import wanders
 
 
 def main() -> None:
     """Run all comparisons and print one table."""
     table = Table("work", "peer", "ours", "theirs", "ratio", "least to most", title="Beside others")
-    for turns in (*walks(sys.argv[1]), *searches(), *iterations(), *memories()):
+    for turns in (*walks(sys.argv[1]), *wanders(), *searches(), *iterations(), *memories()):
         table.add_row(*cells(turns))
     Console().print(table)
 
