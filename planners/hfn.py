@@ -4,7 +4,7 @@ The behaviour looks for the heading from which the way to its target is shortest
 and slows down so that it can always stop in time. It is local, so A* on the known map tells it where to go.
 """
 
-from math import cos, sin
+from math import cos, hypot, sin
 from typing import Annotated, ClassVar, cast
 
 import numpy as np
@@ -27,6 +27,9 @@ AHEAD, STEP = 1.0, 0.1
 
 REACH = 3.0
 """Metres in which walls and points of the path count."""
+
+SHORT = 0.25
+"""Metres: where the behaviour would not come farther, it is held up."""
 
 POINT = 0.02
 """Radius of the disc that stands for the end of a beam [m]."""
@@ -51,7 +54,7 @@ class HFN(Settings):
 
 
 class HFNAgent(RobotAgent):
-    """One episode of human-friendly navigation; where its waypoint is not safe, the path itself is driven."""
+    """One episode of human-friendly navigation; where it is held up or not safe, the path is driven."""
 
     def __init__(self, task: Task, margin: float) -> None:
         """Nothing is known yet."""
@@ -67,8 +70,9 @@ class HFNAgent(RobotAgent):
         if not len(path):
             return None
         way = points(self.task, path)
-        wish = self._ahead(observation, self._target(observation.place, way))
-        return self.pilot.waypoint(self.known.cells, observation.place, way, wish)
+        place, wish = observation.place, self._ahead(observation, self._target(observation.place, way))
+        moves = hypot(wish[0] - place[0], wish[1] - place[1]) > SHORT
+        return self.pilot.waypoint(self.known.cells, place, way, wish if moves else None)
 
     def _target(self, pose: Pose, way: Array) -> Array:
         """The last point of a path that is in sight and in reach."""

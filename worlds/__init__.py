@@ -6,6 +6,7 @@ from fogbench.worlds.tables import named
 
 FAMILIES = {
     "blobs": "fogbench.worlds.maps.families.blobs:Blobs",
+    "fixed_blobs": "fogbench.worlds.maps.families.fixed_blobs:FixedBlobs",
     "tunnel": "fogbench.worlds.maps.families.tunnel:Tunnel",
     "maze": "fogbench.worlds.maps.families.maze:Maze",
     "rooms": "fogbench.worlds.maps.families.rooms:Rooms",

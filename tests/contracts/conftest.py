@@ -63,6 +63,10 @@ FAMILIES: dict[str, list[dict[str, Any]]] = {
         {"size": 12, "obstacles": [5, 15], "obstacle_size": [1, 3]},
         {"size": 12, "obstacles": [5, 16], "obstacle_size": [1, 3]},
     ],
+    "fixed_blobs": [
+        {"size": 12, "obstacles": [5, 15], "obstacle_size": [1, 3]},
+        {"size": 12, "obstacles": [5, 15], "obstacle_size": [1, 3], "map_seed": 1},
+    ],
     "tunnel": [{"length": [4, 9]}, {"length": [10, 12], "width": 3, "bends": [0, 1], "open": 0.5, "goal": "inside"}],
     "maze": [{"size": 11}, {"size": 11, "loops": 0.2}],
     "rooms": [{"size": 15, "rooms": [2, 3], "doors": [1, 2]}, {"size": 15, "rooms": [2, 3], "doors": [1, 1]}],
