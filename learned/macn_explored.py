@@ -1,5 +1,6 @@
 """Settings of MACN on the graph explored so far: free of how many nodes there are."""
 
+from pkgutil import resolve_name
 from typing import Annotated, ClassVar
 
 from pydantic import Field
@@ -7,9 +8,12 @@ from pydantic import Field
 from fogbench.learned.encoding.encoding import Encoding
 from fogbench.learned.encoding.explored_sizes import FRONTIER, TOLD, TRAITS
 from fogbench.learned.memory import Remembering
+from fogbench.learned.policy import AGENT
 from fogbench.learned.shapes import Shapes, linear, parts
 from fogbench.worlds.graph.graph import NODES
-from fogbench.worlds.tables import imported
+
+ENCODING = "fogbench.learned.encoding.explored:ExploredEncoding"
+"""What its network sees."""
 
 HIDDEN = 32
 """Numbers of a layer that looks at one node."""
@@ -36,12 +40,12 @@ class MacnExplored(Remembering):
 
     def encoding(self) -> Encoding:
         """The graph explored so far."""
-        made: Encoding = imported("fogbench.learned.encoding.explored:ExploredEncoding", "macn_explored")(self)
+        made: Encoding = resolve_name(ENCODING)(self)
         return made
 
     def uses(self) -> tuple[str, ...]:
-        """Its encoding is not that of its kind."""
-        return *super().uses(), "fogbench.learned.encoding.explored:ExploredEncoding"
+        """What plays for it; its encoding is not that of its kind."""
+        return AGENT, self.made_of, ENCODING
 
     def shapes(self) -> Shapes:
         """Those of a reward of each node, of a score of each neighbour, and of a memory."""

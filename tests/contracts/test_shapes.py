@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from fogbench.learned.graph_policy import GraphPolicy
 from fogbench.learned.policy import Policy
 from fogbench.worlds.types import Budget, Task
 
@@ -17,7 +18,8 @@ def test_shapes_are_those_of_the_network(policy: Policy) -> None:
 def test_what_plays_is_named(policy: Policy) -> None:
     """What no import statement names is told: the module of the agent, the network and the encoding."""
     (kind,) = policy.kinds
-    task = Task(kind, (0, 0), None, Budget(1), getattr(policy, "size", (1, 1)))
+    extent = (policy.nodes,) if isinstance(policy, GraphPolicy) else getattr(policy, "size", (1, 1))
+    task = Task(kind, (0, 0), None, Budget(1), extent)
     agent = type(policy.start(task, np.random.default_rng()))
     made = [type(each) for each in (policy.network(), policy.encoding())]
     assert policy.uses() == (agent.__module__, *(f"{each.__module__}:{each.__qualname__}" for each in made))
