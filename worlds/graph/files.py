@@ -23,8 +23,8 @@ def edge_list(contents: bytes) -> Any:
     lines = (line.partition(b"#")[0].split() for line in contents.splitlines())
     first = next(filter(None, lines), [])
     weighted = len(first) == 3 and not first[2].startswith(b"{")
-    data: Any = (("weight", float),) if weighted else True
-    return nx.read_edgelist(io.BytesIO(contents), data=data)
+    reader: Any = nx.read_weighted_edgelist if weighted else nx.read_edgelist
+    return reader(io.BytesIO(contents))
 
 
 READERS: Mapping[str, Callable[[bytes], Any]] = {
