@@ -21,7 +21,7 @@ from fogbench.worlds.robot.world import RobotState
 
 HALLS = {
     "100 boxes": Blobs(size=200, obstacles=(60, 60), obstacle_size=(5, 20)),
-    "700 boxes": Blobs(size=400, obstacles=(420, 420), obstacle_size=(3, 14)),
+    "700 boxes": Blobs(size=400, obstacles=(640, 640), obstacle_size=(3, 14)),
 }
 
 DECISIONS = 50
