@@ -1,4 +1,4 @@
-"""Files of graphs, read by networkx; whatever is wrong with one is told in a line."""
+"""Files of graphs, read by networkx, and city maps; whatever is wrong with one is told in a line."""
 
 import io
 from collections.abc import Callable, Mapping
@@ -10,27 +10,45 @@ import numpy as np
 from fogbench.worlds.files import Loaded
 from fogbench.worlds.graph.graph import Graph
 from fogbench.worlds.graph.networks import converted, parts
+from fogbench.worlds.graph.streets import streets
+from fogbench.worlds.maps.files.octile import read_map
 from fogbench.worlds.mistake import Mistake, counted, shown
 from fogbench.worlds.types import MapError
 
 
-def edge_list(contents: bytes) -> Any:
+def graphml(file: Loaded) -> Any:
+    """A graph of networkx.
+
+    Raises:
+        Exception: whatever networkx says of a broken one.
+    """
+    return nx.read_graphml(io.BytesIO(file.contents))
+
+
+def edge_list(file: Loaded) -> Any:
     """A graph of networkx: on each line two nodes, and behind them nothing, a dictionary, or the edge's weight.
 
     Raises:
         Exception: whatever networkx says of another line.
     """
-    lines = (line.partition(b"#")[0].split() for line in contents.splitlines())
+    lines = (line.partition(b"#")[0].split() for line in file.contents.splitlines())
     first = next(filter(None, lines), [])
     weighted = len(first) == 3 and not first[2].startswith(b"{")
     reader: Any = nx.read_weighted_edgelist if weighted else nx.read_edgelist
-    return reader(io.BytesIO(contents))
+    return reader(io.BytesIO(file.contents))
 
 
-READERS: Mapping[str, Callable[[bytes], Any]] = {
-    ".graphml": lambda contents: nx.read_graphml(io.BytesIO(contents)),
-    ".edgelist": edge_list,
-}
+def city(file: Loaded) -> Any:
+    """The graph of networkx of a city map's streets.
+
+    Raises:
+        MapError: the map is broken.
+        Mistake: it has none.
+    """
+    return streets(read_map(file.path, file.contents))
+
+
+READERS: Mapping[str, Callable[[Loaded], Any]] = {".graphml": graphml, ".edgelist": edge_list, ".map": city}
 """Of the files that end so."""
 
 
@@ -51,18 +69,27 @@ def read_graph(file: Loaded, both_ways: bool) -> Read:
         MapError: it is broken, directed, or in parts; one line.
     """
     try:
-        source = READERS[file.path.suffix](file.contents)
-    except Exception as error:  # noqa: BLE001  whatever a broken file does to its reader
-        raise MapError(f"{file.path}: {type(error).__name__}: {shown(str(error), 200)}") from None
-    if source.is_directed() and not both_ways:
-        expected = "edges that lead both ways, or `both_ways: true` to read them so"
-        raise MapError(f"{file.path}: got a directed graph; expected {expected}")
-    try:
+        source = READERS[file.path.suffix](file)
+        refuse_directed(source, both_ways)
         graph, names = converted(source)
+    except MapError:
+        raise
     except Mistake as error:
         raise MapError(f"{file.path}: {error}") from None
+    except Exception as error:  # noqa: BLE001  whatever a broken file does to its reader
+        raise MapError(f"{file.path}: {type(error).__name__}: {shown(str(error), 200)}") from None
     refuse_parts(file, graph, names)
     return Read(graph, {str(name): k for k, name in enumerate(names)}, notes(source, graph))
+
+
+def refuse_directed(source: Any, both_ways: bool) -> None:
+    """Go on with a graph of networkx whose edges lead both ways, or are read so.
+
+    Raises:
+        Mistake: they lead one way.
+    """
+    if source.is_directed() and not both_ways:
+        raise Mistake("got a directed graph; expected edges that lead both ways, or `both_ways: true` to read them so")
 
 
 def refuse_parts(file: Loaded, graph: Graph, names: list[Any]) -> None:

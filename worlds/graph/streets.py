@@ -17,7 +17,8 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from fogbench.worlds.maps.files.octile import read_map
-from fogbench.worlds.types import Array, Cell, MapError
+from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.types import Array, Cell
 
 AROUND = ((-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1))
 """Steps from a cell to the eight around it, clockwise from above."""
@@ -32,7 +33,7 @@ def main() -> None:
     try:
         graph = streets(read_map(asked.map, asked.map.read_bytes()))
         nx.write_graphml(graph, asked.out)
-    except (MapError, OSError) as error:
+    except (Mistake, OSError) as error:
         parser.error(str(error))
     print(f"{asked.out}: {len(graph)} nodes, {graph.number_of_edges()} edges")  # noqa: T201  it is a script
 
@@ -41,12 +42,12 @@ def streets(blocked: Array) -> Any:
     """The graph of networkx of a map [H, W] bool; a node is called `column,row`.
 
     Raises:
-        MapError: the map has no street.
+        Mistake: the map has no street.
     """
     lines, widths = pieces(pixels(thinned(~blocked))), 2 * distance_transform_edt(np.pad(~blocked, 1))[1:-1, 1:-1]
     graph = crossings(merged(lines, widths))
     if not graph.number_of_edges():
-        raise MapError("got a map without a street; expected two crossings or dead ends at least")
+        raise Mistake("got a map without a street; expected two crossings or dead ends at least")
     part = graph.subgraph(max(nx.connected_components(graph), key=len)).copy()
     for (row, column), place in part.nodes(data=True):
         place["x"], place["y"] = float(column), float(len(blocked) - 1 - row)

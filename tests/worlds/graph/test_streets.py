@@ -14,6 +14,7 @@ import fogbench
 from fogbench.worlds.graph.conditions import GraphConditions
 from fogbench.worlds.graph.families.graph_file import GraphFile
 from fogbench.worlds.graph.streets import streets, thinned
+from fogbench.worlds.mistake import Mistake
 from fogbench.worlds.types import Array, MapError
 
 CROSS = """
@@ -113,7 +114,7 @@ def test_lines_are_thin_and_hang_together() -> None:
 def test_a_map_without_a_street_is_told() -> None:
     """In one line."""
     for text in ("@@@\n@@@", "@@@\n@.@"):
-        with pytest.raises(MapError) as caught:
+        with pytest.raises(Mistake) as caught:
             streets(drawn(text))
         assert str(caught.value) == "got a map without a street; expected two crossings or dead ends at least"
 
@@ -139,6 +140,24 @@ def test_the_script_writes_a_file_that_is_played_on(tmp_path: Path) -> None:
     assert code == 2
     assert "got 0 rows; expected 7, the height." in text
     assert "Traceback" not in text
+
+
+def test_a_city_map_is_played_on_as_it_is(tmp_path: Path) -> None:
+    """The same graph as that of the file; a map without streets is told with its place."""
+    (tmp_path / "a.map").write_text(TYPE + "\n".join(CROSS.split()) + "\n")
+    nx.write_graphml(streets(drawn(CROSS)), tmp_path / "a.graphml")
+    (direct, _, names), (file, _, same) = (
+        (read.graph, read.notes, read.numbers)
+        for read in (GraphFile(file=tmp_path / name)._read() for name in ("a.map", "a.graphml"))
+    )
+    assert names == same
+    for part in ("starts", "ends", "lengths", "coordinates"):
+        assert np.array_equal(getattr(direct, part), getattr(file, part))
+    (tmp_path / "b.map").write_text("type octile\nheight 1\nwidth 1\nmap\n.\n")
+    with pytest.raises(MapError) as caught:
+        GraphFile(file=tmp_path / "b.map")._read()
+    expected = "got a map without a street; expected two crossings or dead ends at least"
+    assert str(caught.value) == f"{tmp_path}/b.map: {expected}"
 
 
 @pytest.mark.maps

@@ -29,7 +29,8 @@ class GraphFile(Graphs):
     """
 
     file: MapFile
-    """A file that ends in `.graphml`, or in `.edgelist`: two nodes a line, and the edge's weight or a dictionary."""
+    """A file that ends in `.graphml`; in `.edgelist`: two nodes a line, and the edge's weight or a dictionary; or in
+    `.map`: a city of the Moving AI Lab, whose street crossings are the nodes (see `fogbench.worlds.graph.streets`)."""
     both_ways: bool = False
     """Whether the edges of a directed graph are read as leading both ways; else such a graph is refused."""
     start: str | None = None

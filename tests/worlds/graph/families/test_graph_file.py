@@ -245,7 +245,7 @@ def test_tasks_out_of_bounds_are_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("fields", "told"),
     [
-        ({"file": "a.txt"}, "a file that ends in .graphml, .edgelist"),
+        ({"file": "a.txt"}, "a file that ends in .graphml, .edgelist, .map"),
         ({"file": "a.graphml", "start": "a"}, "start and goal, or neither"),
     ],
 )
