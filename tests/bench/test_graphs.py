@@ -89,7 +89,7 @@ def test_what_plays_no_graphs_is_skipped(scenario: Callable[..., Scenario]) -> N
     """RRT* says why."""
     for variant in scenario().variants:
         skipped = {entry.label: entry.skipped for entry in variant.agents if entry.skipped}
-        assert skipped == {"rrt_star": "it plays grid worlds, not graph"}
+        assert skipped == {"rrt_star": "it plays grid, robot worlds, not graph"}
 
 
 MISTAKES = {
