@@ -38,7 +38,7 @@ class GraphPolicy(Showing):
         Raises:
             Mistake: a network that is made for graphs of one size is to meet others.
         """
-        if extent not in (None, (self.nodes,)):
+        if extent is not None and len(extent) == 1 and extent != (self.nodes,):  # other kinds have more numbers
             raise Mistake(f"a network for graphs of {counted(int(extent[0]), 'node')} (this one is for {self.nodes})")
 
     @field_validator("nodes")

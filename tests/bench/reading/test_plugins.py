@@ -249,7 +249,7 @@ def test_what_is_wrong_with_its_settings_is_told_by_its_fields(
 def test_a_map_family_of_no_kind_is_one_line(read: Read) -> None:
     """A kind of world that there is none of is told at the name of the family."""
     found = line(read, old="blobs", new="./maps.py:Sea")
-    expected = "a map family of the kind grid or robot; this one is of 'sea'"
+    expected = "a map family of the kind grid or graph or robot; this one is of 'sea'"
     assert found == f"2:8  maps: got ./maps.py:Sea; expected {expected}."
 
 
