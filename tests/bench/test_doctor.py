@@ -32,7 +32,11 @@ from fogbench.learned.value_iteration.value_iteration import ValueIteration
 outcomes = set()
 networks = "{macn: {checkpoint: none}}, {vin: {checkpoint: none, stitched: true}}, {cnn_memory: {checkpoint: none}}"
 text = "name: networks\\nmaps: {maze: {size: 21}}\\nbudget: {steps: 9}\\nepisodes: 1\\nagents: [" + networks + "]"
-texts = [(text, Path("networks.yaml")), *((path.read_text("utf-8"), path) for path in find(None))]
+graphs = "{macn_graph: {checkpoint: none}}, {vin_graph: {checkpoint: none}}, {cnn_memory_graph: {checkpoint: none}}"
+maps = "maps: {random_graph: {nodes: 16, mean_degree: 3}}"
+other = "name: graphs\\n" + maps + "\\nbudget: {steps: 9}\\nepisodes: 1\\nagents: [" + graphs + "]"
+texts = [(text, Path("networks.yaml")), (other, Path("graphs.yaml"))]
+texts += [(path.read_text("utf-8"), path) for path in find(None)]
 for text, path in texts:
     scenario = read_scenario(text, path)
     for variant in scenario.variants[:1]:
