@@ -75,10 +75,7 @@ def replan(
     k_m += SHORT * straight(coordinates, last, start)
     if fresh:
         U, waiting = _see(known, g, rhs, keys, U, waiting, goal, start, k_m, start)
-        link = heads[start]
-        while link != NONE:
-            U, waiting = _see(known, g, rhs, keys, U, waiting, goal, start, k_m, links[link, 1])
-            link = links[link, 0]
+        U, waiting = _see_around(known, g, rhs, keys, U, waiting, goal, start, k_m, start)
     expanded = 0
     while waiting:
         k1, k2, u = U[0, 0], U[0, 1], int(U[0, 2])
@@ -97,10 +94,7 @@ def replan(
         g[u] = np.inf if raised else rhs[u]
         if raised:
             U, waiting = _see(known, g, rhs, keys, U, waiting, goal, start, k_m, u)
-        link = heads[u]
-        while link != NONE:
-            U, waiting = _see(known, g, rhs, keys, U, waiting, goal, start, k_m, links[link, 1])
-            link = links[link, 0]
+        U, waiting = _see_around(known, g, rhs, keys, U, waiting, goal, start, k_m, u)
     return U, waiting, k_m, expanded
 
 
@@ -133,6 +127,19 @@ def _see(
         link = links[link, 0]
     rhs[s] = least
     return _update_vertex(coordinates, g, rhs, keys, U, waiting, start, k_m, s)
+
+
+@kernel
+def _see_around(
+    known: tuple[Array, Array, Array, Array, Array], g: Array, rhs: Array, keys: Array, U: Array, waiting: int,
+    goal: int, start: int, k_m: float, s: int,
+) -> tuple[Array, int]:  # fmt: skip
+    """Look one step ahead from all neighbours of a node."""
+    link = known[1][s]
+    while link != NONE:
+        U, waiting = _see(known, g, rhs, keys, U, waiting, goal, start, k_m, known[2][link, 1])
+        link = known[2][link, 0]
+    return U, waiting
 
 
 @kernel
