@@ -1,7 +1,7 @@
 """Shortest 8-connected lengths on cells with room for a disc, from one cell to all.
 
 A step to a side costs SIDE and one to a corner CORNER, so that lengths are whole numbers; their ratio is the square
-root of two within 0.0001 from above. An octile path is at most 8.24 % longer than the shortest line of any angle.
+root of two within 0.0001 from above. An octile path is at most 8.25 % longer than the shortest line of any angle.
 """
 
 import heapq

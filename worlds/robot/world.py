@@ -84,7 +84,7 @@ class RobotWorld:
         return Step(after, done.length, done.touched and self.rules.collision == "fails", done.reached)
 
     def shortest(self) -> float:
-        """Length of the octile path over cells with room for the body, at most 8.24 % above the shortest one [m]."""
+        """Length of the octile path over cells with room for the body, at most 8.25 % above the shortest one [m]."""
         return way(self, self.start)
 
     def straight(self) -> float:
