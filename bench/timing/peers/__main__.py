@@ -10,6 +10,7 @@ is, its least and its most.
 
 import sys
 
+from driving import drives
 from iterating import iterations
 from remembering import memories
 from rich.console import Console
@@ -23,7 +24,7 @@ from wandering import wanders
 def main() -> None:
     """Run all comparisons and print one table."""
     table = Table("work", "peer", "ours", "theirs", "ratio", "least to most", title="Beside others")
-    for turns in (*walks(sys.argv[1]), *wanders(), *searches(), *iterations(), *memories()):
+    for turns in (*walks(sys.argv[1]), *wanders(), *drives(), *searches(), *iterations(), *memories()):
         table.add_row(*cells(turns))
     Console().print(table)
 
