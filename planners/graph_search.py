@@ -37,6 +37,15 @@ def nearest(
 
 
 @kernel
+def nearest_step(
+    visited: Array, heads: Array, links: Array, lengths: Array, place: int, goal: int
+) -> tuple[int, int]:  # fmt: skip
+    """Of the steps of `nearest` the one with the least number, NONE where there is none; and the nodes expanded."""
+    steps, expanded = nearest(visited, heads, links, lengths, place, goal)
+    return int(steps[0]) if len(steps) else NONE, expanded
+
+
+@kernel
 def first_steps(
     visited: Array, heads: Array, links: Array, lengths: Array, place: int, target: int
 ) -> tuple[Array, int]:  # fmt: skip
@@ -83,10 +92,12 @@ def _back(
             if leads[other] and found[node] + lengths[link] <= found[other] * (1 + ROUNDING):
                 leads[node] = True
             link = links[link, 0]
-    steps = np.zeros(len(heads), np.bool_)
+    steps, count = np.empty_like(settled), 0
     link = heads[place]
     while link != NONE:
         other = links[link, 1]
-        steps[other] = leads[other] and lengths[link] <= found[other] * (1 + ROUNDING)
+        if leads[other] and lengths[link] <= found[other] * (1 + ROUNDING):
+            steps[count] = other
+            count += 1
         link = links[link, 0]
-    return np.flatnonzero(steps).astype(np.int32)
+    return np.sort(steps[:count])

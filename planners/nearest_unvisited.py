@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogbench.planners.graph_search import nearest
+from fogbench.planners.graph_search import nearest_step
 from fogbench.worlds.graph.known import KnownGraph
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import Observation, Task
@@ -37,9 +37,9 @@ class NearestUnvisitedAgent:
     def act(self, observation: Observation) -> int | None:
         """The node to go to; gives up where all was visited."""
         self.known.update(observation)
-        steps, expanded = nearest(*self.known.arrays, observation.place, self.goal)
+        step, expanded = nearest_step(*self.known.arrays, observation.place, self.goal)
         self.expanded += expanded
-        return int(steps[0]) if len(steps) else None
+        return step if step >= 0 else None
 
     def memory_bytes(self) -> int:
         """The known graph."""

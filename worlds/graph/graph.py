@@ -47,6 +47,11 @@ class Graph:
         return float(np.sqrt(np.square(self.coordinates[a] - self.coordinates[b]).sum()))
 
     @cached_property
+    def unseen(self) -> Array:
+        """[N, C] float64, a view that shows nothing, see `fogbench.worlds.graph.world`: all is infinite."""
+        return np.full((self.size, 1 + self.coordinates.shape[1]), np.inf)
+
+    @cached_property
     def lines(self) -> Array:
         """[M, 2] int32, both ends of each edge, the smaller first."""
         nodes = np.repeat(np.arange(self.size, dtype=np.int32), np.diff(self.starts))

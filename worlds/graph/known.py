@@ -39,9 +39,9 @@ class KnownGraph:
         place, view = observation.place, observation.view
         if self.visited[place]:
             return False
-        row = view[:, 0]
-        self._make_room(2 * degree(row))
-        self.used = fuse(self.visited, self.heads, self.links, self.lengths, self.used, place, row)
+        while (used := fuse(*self.arrays, self.used, place, view)) > len(self.links):
+            self._make_room(used)
+        self.used = used
         if view.shape[1] > 1:
             seen = view[:, 1:]
             self.coordinates = np.minimum(self.coordinates, seen) if self.coordinates.size else seen.copy()
@@ -62,34 +62,35 @@ class KnownGraph:
         """Of all arrays."""
         return sum(a.nbytes for a in (self.visited, self.heads, self.links, self.lengths, self.coordinates))
 
-    def _make_room(self, more: int) -> None:
-        if self.used + more > len(self.links):
-            room = max(self.used + more, 2 * len(self.links))
-            links, lengths = np.empty((room, 2), np.int32), np.empty(room)
-            links[: self.used], lengths[: self.used] = self.links[: self.used], self.lengths[: self.used]
-            self.links, self.lengths = links, lengths
-
-
-@kernel
-def degree(row: Array) -> int:
-    """How many nodes a row [N] of a view shows edges to."""
-    count = 0
-    for length in row:
-        count += length < np.inf
-    return count
+    def _make_room(self, needed: int) -> None:
+        room = max(needed, 2 * len(self.links))
+        links, lengths = np.empty((room, 2), np.int32), np.empty(room)
+        links[: self.used], lengths[: self.used] = self.links[: self.used], self.lengths[: self.used]
+        self.links, self.lengths = links, lengths
 
 
 @kernel
 def fuse(
-    visited: Array, heads: Array, links: Array, lengths: Array, used: int, place: int, row: Array
+    visited: Array, heads: Array, links: Array, lengths: Array, used: int, place: int, view: Array
 ) -> int:  # fmt: skip
-    """Write the row [N] of a node that was not visited into a known graph with room for it; the links used now."""
+    """Write the view from a node that was not visited into a known graph.
+
+    Returns:
+        The links used now. Nothing is written where all edges in view need more than there is room for; then their sum.
+    """
+    near, count = np.empty(len(view), np.int64), 0
+    for other in range(len(view)):
+        if view[other, 0] < np.inf:
+            near[count] = other
+            count += 1
+    if used + 2 * count > len(links):
+        return used + 2 * count
     visited[place] = True
-    for other in range(len(row)):
-        if np.isinf(row[other]) or visited[other]:
-            continue  # an edge to a visited node was seen from there
+    for other in near[:count]:
+        if visited[other]:
+            continue  # the edge was seen from there
         for here, there in ((place, other), (other, place)):
-            links[used, 0], links[used, 1], lengths[used] = heads[here], there, row[other]
+            links[used, 0], links[used, 1], lengths[used] = heads[here], there, view[other, 0]
             heads[here] = used
             used += 1
     return used

@@ -47,9 +47,9 @@ class KnownGraphs:
 def see_each(
     slots: Array, views: Array, places: Array, visited: Array, heads: Array, links: Array, lengths: Array, used: Array
 ) -> None:  # fmt: skip
-    """Write the rows of views [n, N, C] into the known graphs of nodes that were not visited."""
+    """Write views [n, N, C] into the known graphs of nodes that were not visited."""
     for k in range(len(slots)):
         slot = slots[k]
         if not visited[slot, places[slot]]:
             known = visited[slot], heads[slot], links[slot], lengths[slot]
-            used[slot] = fuse(*known, used[slot], places[slot], views[k, :, 0])
+            used[slot] = fuse(*known, used[slot], places[slot], views[k])

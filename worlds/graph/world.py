@@ -10,6 +10,7 @@ Words used here
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -66,8 +67,7 @@ class GraphWorld:
         """The edges of the agent's node, and coordinates where there are any; nothing is drawn."""
         del rng
         graph = self.graph
-        view = np.empty((graph.size, 1 + graph.coordinates.shape[1]))
-        view.fill(np.inf)
+        view = graph.unseen.copy()
         look(graph.starts, graph.ends, graph.lengths, graph.coordinates, state.place, self.task.goal, view)
         view.setflags(write=False)
         return Observation(state.step, state.place, view[:], state.blocked)
@@ -78,16 +78,15 @@ class GraphWorld:
         Raises:
             TypeError: `action` is not a node.
         """
-        size = self.graph.size
-        if type(action) is not int or not 0 <= action < size:
+        graph = self.graph
+        if type(action) is not int or not 0 <= action < graph.size:
             got = f"act returned {action!r} ({type(action).__name__})"
-            raise TypeError(f"{got}; expected a node, an int from 0 to {size - 1}, or None")
-        slipped = bool(self.slip) and rng.random() < self.slip
-        length = length_of(self.graph.starts, self.graph.ends, self.graph.lengths, state.place, action)
-        moves = length < np.inf and not slipped
-        after = GraphState(state.step + 1, action if moves else state.place, blocked=bool(length == np.inf))
-        reached = after.place == self.task.goal
-        return Step(after, float(length) if moves else 0.0, collided=False, reached=reached)
+            raise TypeError(f"{got}; expected a node, an int from 0 to {graph.size - 1}, or None")
+        slipped = self.slip and rng.random() < self.slip
+        length = length_of(graph.starts, graph.ends, graph.lengths, state.place, action)
+        blocked = length == inf
+        place, gone = (state.place, 0.0) if blocked or slipped else (action, length)
+        return Step(GraphState(state.step + 1, place, blocked), gone, False, place == self.task.goal)
 
     def shortest(self) -> float:
         """Length of the optimal path on the full graph."""
@@ -145,12 +144,22 @@ def look(
     """Write what is seen from a node into a view of which all is infinite."""
     for k in range(starts[place], starts[place + 1]):
         view[ends[k], 0] = lengths[k]
-        view[ends[k], 1:] = coordinates[ends[k]]
-    view[place, 1:], view[goal, 1:] = coordinates[place], coordinates[goal]
+        _locate(coordinates, ends[k], view)
+    _locate(coordinates, place, view)
+    _locate(coordinates, goal, view)
+
+
+@kernel
+def _locate(coordinates: Array, node: int, view: Array) -> None:
+    """Write where a node is, if it is anywhere."""
+    for axis in range(coordinates.shape[1]):  # faster than slices, which are empty on most graphs
+        view[node, 1 + axis] = coordinates[node, axis]
 
 
 @kernel
 def length_of(starts: Array, ends: Array, lengths: Array, a: int, b: int) -> float:
     """The length of the edge between two nodes; infinite where there is none."""
-    k = starts[a] + np.searchsorted(ends[starts[a] : starts[a + 1]], b)
-    return lengths[k] if k < starts[a + 1] and ends[k] == b else np.inf
+    for k in range(starts[a], starts[a + 1]):
+        if ends[k] == b:
+            return lengths[k]
+    return np.inf
