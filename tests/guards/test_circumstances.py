@@ -21,12 +21,16 @@ time.time = lambda: truth() + (float(os.environ["JUMP"]) if monotonic() - began 
 """
 """A `sitecustomize` in which the system's clock takes a step."""
 
-SLOW = "import time; time.sleep(0.05); print('\u2192'); os.write(1, b'.')\nwith open(LOG, 'a') as log: log.write('x')"
+SLOW = """import time; time.sleep(float(os.environ.get('PAUSE', 0))); print('\u2192'); os.write(1, b'.')
+with open(LOG, 'a') as log: log.write('x')"""
 TOP = "import os, random, numpy\nLOG = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'log')"
 LUCKY = "return random.choice(free) if numpy.random.random() < 0.2 else min(free, key=near)"
 
 MAP = "type octile\nheight 8\nwidth 12\nmap\n" + "............\n" * 3 + "..@@@@@@@...\n" * 2 + "............\n" * 3
 SCEN = "version 1\n" + "".join(f"0\ta.map\t12\t8\t{k}\t0\t{11 - k}\t7\t9\n" for k in range(4))
+
+PAUSE = "0.05"
+"""Seconds before each decision of the slow planner, where something happens while it plays."""
 
 Step = Callable[[Any, Any], None]
 
@@ -115,8 +119,8 @@ ODD = {
     "three workers": Odd(words=("--workers", "3")),
     "suspended": Odd(meanwhile=suspend),
     "suspended often": Odd(meanwhile=stop_and_go),
-    "clock ahead": Odd({"PYTHONPATH": "FOLDER/clock", "JUMP": "36000"}),
-    "clock back": Odd({"PYTHONPATH": "FOLDER/clock", "JUMP": "-36000"}),
+    "clock ahead": Odd({"PYTHONPATH": "FOLDER/clock", "JUMP": "36000", "PAUSE": PAUSE}),
+    "clock back": Odd({"PYTHONPATH": "FOLDER/clock", "JUMP": "-36000", "PAUSE": PAUSE}),
     "ctrl-c": Odd(meanwhile=ctrl_c),
     "killed": Odd(meanwhile=kill),
     "terminated": Odd(meanwhile=terminate),
@@ -190,6 +194,8 @@ def test_odd_circumstances_change_no_row(name: str, desk: Any, plain: pd.DataFra
     prepare(desk)
     results = str(desk.folder / "results")
     environment = {key: value.replace("FOLDER", str(desk.folder)) for key, value in odd.environment.items()}
+    if odd.meanwhile or odd.words:
+        environment["PAUSE"] = PAUSE
     run = desk.start("run", str(desk.folder / "s.yaml"), "--results", results, *odd.words, **environment)
     if odd.meanwhile:
         desk.wait((desk.folder / "log").exists)
@@ -213,7 +219,7 @@ def test_odd_circumstances_change_no_row(name: str, desk: Any, plain: pd.DataFra
 def test_a_worker_that_is_killed_costs_its_episode(desk: Any, plain: pd.DataFrame) -> None:
     """The episode that it was playing says so, and all others are as ever."""
     prepare(desk)
-    run = desk.start("run", "s.yaml")
+    run = desk.start("run", "s.yaml", PAUSE=PAUSE)
     desk.wait((desk.folder / "log").exists)
     kill_worker(run)
     ended = desk.end(run)
