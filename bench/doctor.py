@@ -33,7 +33,10 @@ PROJECT = "fogbench"
 PYPROJECT = Path(__file__).parents[1] / "pyproject.toml"
 """Of a checkout; an installed project has none."""
 
-AGENTS = ", ".join([*PLANNERS, *(f"{name}: {{checkpoint: none}}" for name in LEARNED)])
+MASKED = "macn_robot: {checkpoint: none, masked: true, label: masked}"
+"""A mask has kernels of its own."""
+
+AGENTS = ", ".join([*PLANNERS, *(f"{name}: {{checkpoint: none}}" for name in LEARNED), MASKED])
 """All that ship with the project."""
 
 

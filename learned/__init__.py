@@ -8,12 +8,16 @@ LEARNED = {
     "vin_graph": "fogbench.learned.vin_graph:VinGraph",
     "macn_explored": "fogbench.learned.macn_explored:MacnExplored",
     "cnn_memory_graph": "fogbench.learned.cnn_memory_graph:CnnMemoryGraph",
+    "macn_robot": "fogbench.learned.macn_robot:MacnRobot",
+    "vin_robot": "fogbench.learned.vin_robot:VinRobot",
+    "cnn_memory_robot": "fogbench.learned.cnn_memory_robot:CnnMemoryRobot",
 }
 """Policies that ship with the project, as `module:class`."""
 
 ENCODINGS = {
     "grid": "fogbench.learned.encoding.grid:GridEncoding",
     "graph": "fogbench.learned.encoding.graph:GraphEncoding",
+    "robot": "fogbench.learned.encoding.robot:RobotEncoding",
 }
 """What networks see of an episode, and what their outputs mean, by the kind of world (see `encoding.encoding`).
 

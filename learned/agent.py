@@ -77,8 +77,13 @@ class PolicyAgent:
     def decide(self, inputs: Any) -> Tensor:
         """Take a step; returns the scores [1, A] of the outputs."""
         scores, self.state = self.network(inputs, self.state)
-        self.action = self.viewpoint.act(int(scores.argmax()))
+        self.action = self.viewpoint.act(int(self.weighed(scores, inputs).argmax()))
         return cast(Tensor, scores)
+
+    def weighed(self, scores: Tensor, inputs: Any) -> Tensor:
+        """The scores [1, A] by which it decides: the network's."""
+        del inputs
+        return scores
 
     def memory_bytes(self) -> int:
         """The state of the network, and what its viewpoint carries."""
@@ -87,3 +92,12 @@ class PolicyAgent:
     def search_nodes(self) -> int:
         """There is no search."""
         return 0
+
+
+class MaskedAgent(PolicyAgent):
+    """One that takes no output that is seen to lead into an obstacle."""
+
+    def weighed(self, scores: Tensor, inputs: Any) -> Tensor:
+        """Those of outputs that are not open are -inf."""
+        is_open = torch.from_numpy(self.encoding.open(inputs)).to(scores.device)
+        return scores.masked_fill(~is_open, -torch.inf)

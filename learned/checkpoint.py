@@ -31,7 +31,7 @@ NONE = "none"
 """In the place of a checkpoint: fresh weights."""
 
 
-WEIGHTLESS = frozenset({"iterations", "memory_rows", "most"})
+WEIGHTLESS = frozenset({"iterations", "memory_rows", "most", "masked"})
 """Settings on a card that no weight depends on."""
 
 

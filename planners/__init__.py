@@ -37,7 +37,11 @@ REFERENCES = {
 }
 """By the kind of world; other packages add theirs by the group `fogbench.references`."""
 
-JUDGES = {"grid": "fogbench.planners.grid_judge:GridJudge", "graph": "fogbench.planners.graph_judge:GraphJudge"}
+JUDGES = {
+    "grid": "fogbench.planners.grid_judge:GridJudge",
+    "graph": "fogbench.planners.graph_judge:GraphJudge",
+    "robot": "fogbench.planners.robot.teacher:RobotTeacher",
+}
 """What knows which actions are right (see `judging`), by the kind of world; others by the group `fogbench.judges`."""
 
 SPEEDS = {"A* over an empty 512x512 map": "fogbench.planners.speed:search_empty_map"}

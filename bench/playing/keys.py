@@ -74,7 +74,7 @@ def _of_world(variant: Variant) -> tuple[type | str, ...]:
 def _measures(variant: Variant) -> tuple[type | str, ...]:
     """The judge and the reference of a kind of world."""
     judge, reference = judge_of(variant.kind), reference_of(variant.kind)
-    return *((judge,) if judge else ()), *((reference.settings,) if reference else ())
+    return *((judge,) if hasattr(judge, "judge") else ()), *((reference.settings,) if reference else ())
 
 
 def _of_agent(entry: Entry) -> tuple[type | str, ...]:

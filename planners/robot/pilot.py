@@ -163,10 +163,11 @@ def in_sight(cells: Array, cell: float, keep: float, pose: Pose, x: float, y: fl
 
 @kernel
 def safe(
-    cells: Array, cell: float, keep: float, pose: Pose, v: float, w: float, waypoint: Pose, limits: Limits, ticks: int
-) -> bool:
+    cells: Array, cell: float, keep: float, pose: Pose, v: float, w: float,
+    waypoint: Pose, limits: Limits, ticks: int, brake: int = BRAKE,
+) -> bool:  # fmt: skip
     """Whether a disc of radius `keep` [m] can drive to a waypoint for some ticks, and brake then, and touch nothing."""
     pose, v, w, _, touched, _ = drive(cells, cell, keep, pose, v, w, waypoint, limits, ticks, NOWHERE, -1.0)
     if touched:
         return False
-    return not drive(cells, cell, keep, pose, v, w, pose, limits, BRAKE, NOWHERE, -1.0)[4]
+    return not drive(cells, cell, keep, pose, v, w, pose, limits, brake, NOWHERE, -1.0)[4]

@@ -49,6 +49,9 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
     "vin_graph": [{"checkpoint": "none", "nodes": 36}, {"checkpoint": "none", "nodes": 36, "discount": 0.9}],
     "cnn_memory_graph": [{"checkpoint": "none", "nodes": 36}, {"checkpoint": "none", "nodes": 36, "memory": "lstm"}],
     "macn_explored": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "feedforward", "most": 40}],
+    "macn_robot": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "masked": True}],
+    "vin_robot": [{"checkpoint": "none"}],
+    "cnn_memory_robot": [{"checkpoint": "none", "memory": "gru"}],
     "cnn_memory": [{"checkpoint": "none", "memory": "gru"}, {"checkpoint": "none", "memory": "lstm", "size": [7, 9]}],
     "walker": [{}],
     "ring_net": [{"checkpoint": "none"}],
@@ -213,13 +216,17 @@ SETTINGS = {
 }
 """The entries whose examples a test runs for, by the name of its argument; what is about cells takes those of grids."""
 
+TEACHERS = {**planners.JUDGES, **FOREIGN["fogbench.judges"]}
+"""What knows which actions are right, by the kind of world; that of robots teaches, and does not judge."""
+
 NAMES = {
     "refereed": [*planners.REFERENCES, *FOREIGN["fogbench.references"]],
-    "judged": [*planners.JUDGES, *FOREIGN["fogbench.judges"]],
+    "taught": [*TEACHERS],
+    "judged": [kind for kind in TEACHERS if kind != "robot"],
     "shown": SHOWN,
     "family_name": [*MAPS],
 }
-"""What a test runs for by name: kinds of world that have a reference, a judge, an encoding; and families."""
+"""What a test runs for by name: kinds of world that have a reference, a teacher, a judge, an encoding; and families."""
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

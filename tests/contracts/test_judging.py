@@ -37,11 +37,25 @@ def test_a_reference_plays_its_kind_without_settings(refereed: str, arena: Arena
     for world in arena(refereed):
         judge = judge_of(refereed)(world.task) if judge_of(refereed) else None
         for _, observation, action, _, _ in play(world, settings, 0):
-            if judge is None:
+            if not isinstance(judge, Judge):
                 continue
             judge.see(observation)
             if action is not None:
                 assert not judge.judge(action).strictly_wrong
+
+
+def test_a_teacher_tells_of_each_output(taught: str, encoding_of: Find, arena: Arena, play: Play) -> None:
+    """Which are right, wherever the reference decides; whoever only teaches has no verdict."""
+    outputs = len(encoding_of(taught).outputs)
+    for world in arena(taught):
+        teacher = judge_of(taught)(world.task)
+        assert isinstance(teacher, Judge) == (taught != "robot")
+        for _, observation, action, _, _ in play(world, _reference(taught), 0):
+            teacher.see(observation)
+            targets = teacher.targets()
+            assert targets.dtype == np.bool_
+            assert targets.shape == (outputs,)
+            assert targets.any() or action is None or isinstance(teacher, Judge)
 
 
 def test_a_judge_knows_what_it_teaches(judged: str, encoding_of: Find, arena: Arena, play: Play) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from fogbench.learned.graph_policy import GraphPolicy
 from fogbench.learned.policy import Policy
+from fogbench.worlds.robot.rules import Body, Lidar, Outfit
 from fogbench.worlds.types import Budget, Task
 
 
@@ -19,7 +20,8 @@ def test_what_plays_is_named(policy: Policy) -> None:
     """What no import statement names is told: the module of the agent, the network and the encoding."""
     (kind,) = policy.kinds
     extent = (policy.nodes,) if isinstance(policy, GraphPolicy) else getattr(policy, "size", (1, 1))
-    task = Task(kind, (0, 0), None, Budget(1), extent)
+    sensor = Outfit(Lidar(), Body(), cell=0.1, goal_radius=0.3) if kind == "robot" else None
+    task = Task(kind, (0, 0), sensor, Budget(1), extent)
     agent = type(policy.start(task, np.random.default_rng()))
     made = [type(each) for each in (policy.network(), policy.encoding())]
     assert policy.uses() == (agent.__module__, *(f"{each.__module__}:{each.__qualname__}" for each in made))

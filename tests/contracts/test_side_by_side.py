@@ -19,9 +19,9 @@ Find = Callable[[str], Any]
 
 
 @pytest.mark.parametrize("hindsight", [False, True])
-def test_side_by_side_is_one_by_one(judged: str, encoding_of: Find, arena: Arena, hindsight: bool) -> None:
+def test_side_by_side_is_one_by_one(taught: str, encoding_of: Find, arena: Arena, hindsight: bool) -> None:
     """With random outputs all see, teach, encode and do the same, to the bit, until the last episode ends."""
-    worlds, encoding, judge = arena(judged), encoding_of(judged), judge_of(judged)
+    worlds, encoding, judge = arena(taught), encoding_of(taught), judge_of(taught)
     if hindsight and not hasattr(judge, "hindsight"):
         return
     outputs, slots = len(encoding.outputs), np.arange(len(worlds))
@@ -34,10 +34,10 @@ def test_side_by_side_is_one_by_one(judged: str, encoding_of: Find, arena: Arena
         WorldByWorld(len(worlds)), ViewpointByViewpoint(len(worlds), encoding),
         TeacherByTeacher(len(worlds), outputs, start),
     )  # fmt: skip
-    for batch, viewpoints, taught in (many, single):
+    for batch, viewpoints, teaching in (many, single):
         batch.reset(slots, worlds, [partial(np.random.default_rng, k) for k in range(len(worlds))])
         viewpoints.reset(slots, [world.task for world in worlds])
-        taught.reset(slots, worlds)
+        teaching.reset(slots, worlds)
     luck = np.random.default_rng(0)
     while len(slots):
         chosen = luck.integers(outputs, size=len(slots))
