@@ -5,9 +5,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogbench.learned.encoding.robot_sizes import CHOICES, SEEN, WINDOW
-from fogbench.learned.policy import AGENT
+from fogbench.learned.encoding.robot_sizes import CHOICES, seen_count
+from fogbench.learned.policy import AGENT, Size
 from fogbench.learned.showing import Showing
+from fogbench.worlds.robot.rules import Metres
 from fogbench.worlds.types import Agent, Task
 
 
@@ -16,18 +17,22 @@ class RobotPolicy(Showing):
 
     kinds: ClassVar[frozenset[str]] = frozenset({"robot"})
 
+    window: Size = 10
+    """Rows and columns of the image that it plans on; the robot stands at the middle of its lower edge and looks up."""
+    cell: Metres = 0.5
+    """Side of the image's cells [m]."""
     masked: bool = False
     """Whether it takes no waypoint that its scan shows to be blocked; any weights can be played so."""
 
     @property
     def plane(self) -> tuple[int, int]:
         """The paper's 10x10."""
-        return WINDOW, WINDOW
+        return self.window, self.window
 
     @property
     def seen_count(self) -> int:
         """Numbers of the image, the beams and the compass."""
-        return SEEN
+        return seen_count(self.window)
 
     @property
     def output_count(self) -> int:

@@ -1,6 +1,7 @@
 """What a network sees of a robot's world: what is kept of an episode, how it becomes tensors, what its outputs mean."""
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
@@ -9,6 +10,18 @@ from fogbench.planners.robot.choices import CHOICES, NAMES, ORIGIN, chosen
 from fogbench.worlds.robot.driving import Pose
 from fogbench.worlds.robot.rules import Outfit
 from fogbench.worlds.types import Array, Observation, Task, Waypoint
+
+
+class Shown(Protocol):
+    """What the settings of a policy say of what it is shown; see `fogbench.learned.robot_policy.RobotPolicy`."""
+
+    @property
+    def window(self) -> int:
+        """Rows and columns of the image."""
+
+    @property
+    def cell(self) -> float:
+        """Side of its cells [m]."""
 
 
 class RobotViewpoint:
@@ -48,8 +61,9 @@ class RobotEncoding:
 
     outputs = NAMES
 
-    def __init__(self, settings: object) -> None:
-        """It shows the same whatever the settings say."""
+    def __init__(self, settings: Shown) -> None:
+        """Show what the settings say."""
+        self.window, self.cell = settings.window, settings.cell
 
     def start(self, task: Task) -> RobotViewpoint:
         """A viewpoint from which nothing was seen."""
@@ -57,7 +71,7 @@ class RobotEncoding:
 
     def encode(self, viewpoints: Sequence[RobotViewpoint]) -> RobotInputs:
         """What a network sees from some viewpoints."""
-        return encode(gather(viewpoints))
+        return encode(gather(viewpoints), self.window, self.cell)
 
     def open(self, inputs: RobotInputs) -> Array:
         """[B, A] bool, the choices that the scan does not show blocked; turns on the spot, which brake, always are."""

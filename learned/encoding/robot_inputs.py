@@ -4,7 +4,8 @@ Words used here
     B        samples
     R        beams of the widest scan; behind a narrower one stand zeros, which tell nothing
     bodies   [B, 12] float64, what robots are, see `body_of`
-    image    [B, 3, WINDOW, WINDOW] what the VI module plans on: seen to be free, seen to be blocked, the goal
+    S        rows and columns of an image
+    image    [B, 3, S, S] what the VI module plans on: seen to be free, seen to be blocked, the goal
     beams    [B, BEAMS] how near and how far the nearest wall is in each sector
     compass  [B, COMPASS] where the goal is, how the robot moves, and where it is on the map
 
@@ -19,7 +20,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.robot_sizes import BEAMS, BEARINGS, CELL, CHANNELS, COMPASS, SECTORS, WINDOW
+from fogbench.learned.encoding.robot_sizes import BEAMS, BEARINGS, CHANNELS, COMPASS, SECTORS, WAVES
 from fogbench.planners.robot.choices import CHOICES, ORIGIN, can_drive, span
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.robot.driving import Limits, Pose, carried, command, move
@@ -28,11 +29,8 @@ from fogbench.worlds.robot.lidar import bearing
 from fogbench.worlds.robot.rules import Outfit
 from fogbench.worlds.types import FREE, UNKNOWN, Array
 
-NEAR = 1.0
-"""Metres in which a wall is near."""
-
-HERE = (WINDOW - 1) * WINDOW + WINDOW // 2
-"""The robot's cell in the image."""
+NEAR, FAR = 1.0, 5.0
+"""Metres in which a wall is near, and beyond which it is far, or the goal is."""
 
 
 class Told(NamedTuple):
@@ -60,7 +58,7 @@ class RobotInputs(NamedTuple):
     """What a network sees, for a batch; and what tells which of its outputs are open."""
 
     image: Tensor
-    """[B, 3, WINDOW, WINDOW] float32."""
+    """[B, 3, S, S] float32."""
     cells: Tensor
     """[B] int64, where the robots are in the image."""
     beams: Tensor
@@ -78,7 +76,10 @@ class RobotInputs(NamedTuple):
 
     def to(self, device: str) -> "RobotInputs":
         """The same on a device."""
-        return self if self.image.device.type == device else RobotInputs(*(p.to(device) for p in self[:4]), *self[4:])
+        if self.image.device.type == device:
+            return self
+        image, cells, beams, compass = (part.to(device) for part in self[:4])
+        return self._replace(image=image, cells=cells, beams=beams, compass=compass)
 
     @property
     def beside(self) -> tuple[Tensor, Tensor, Tensor]:
@@ -102,16 +103,17 @@ def left_with(pose: Pose, v: float, w: float, waypoint: Pose, limits: Limits, ti
     return v, w
 
 
-def encode(told: Told) -> RobotInputs:
-    """What a network sees of what some robots are told."""
+def encode(told: Told, side: int, cell: float) -> RobotInputs:
+    """What a network sees of what some robots are told, with an image of `side` cells of `cell` [m] to each side."""
     batch = len(told.poses)
-    image = np.zeros((batch, CHANNELS, WINDOW, WINDOW), np.float32)
+    image = np.zeros((batch, CHANNELS, side, side), np.float32)
     beams, compass = np.zeros((batch, BEAMS), np.float32), np.zeros((batch, COMPASS), np.float32)
-    draw(told.ranges, told.poses, told.goals, told.bodies, image)
+    draw(told.ranges, told.poses, told.goals, told.bodies, cell, image)
     sweep(told.ranges, told.bodies, beams)
     point(told.poses, told.before, told.speeds, told.last, told.goals, told.blocked, told.bodies, compass)
-    tensors = map(torch.from_numpy, (image, np.full(batch, HERE), beams, compass))
-    return RobotInputs(*tensors, told.ranges, told.poses, told.speeds, told.bodies)
+    here = np.full(batch, (side - 1) * side + side // 2)
+    shown, cells, swept, pointed = map(torch.from_numpy, (image, here, beams, compass))
+    return RobotInputs(shown, cells, swept, pointed, told.ranges, told.poses, told.speeds, told.bodies)
 
 
 @kernel
@@ -122,26 +124,26 @@ def seen_from(pose: Array, x: float, y: float) -> tuple[float, float]:
 
 
 @kernel
-def draw(ranges: Array, poses: Array, goals: Array, bodies: Array, image: Array) -> None:
+def draw(ranges: Array, poses: Array, goals: Array, bodies: Array, cell: float, image: Array) -> None:
     """Draw scans and goals into images of zeros; a scan is written into a map of coarse cells as into any other."""
+    side = image.shape[2]
     for b in range(len(image)):
-        cells = np.full((WINDOW, WINDOW), UNKNOWN, np.uint8)
+        cells = np.full((side, side), UNKNOWN, np.uint8)
         count, field, most = int(bodies[b, 8]), bodies[b, 9], bodies[b, 10]
-        fuse(cells, ranges[b, :count], WINDOW / 2, 0.0, np.pi / 2, field, most, CELL)
-        for row in range(WINDOW):
-            for column in range(WINDOW):
+        fuse(cells, ranges[b, :count], side / 2, 0.0, np.pi / 2, field, most, cell)
+        for row in range(side):
+            for column in range(side):
                 if cells[row, column] != UNKNOWN:
-                    image[b, cells[row, column] - FREE, WINDOW - 1 - row, column] = 1
+                    image[b, cells[row, column] - FREE, side - 1 - row, column] = 1
         ahead, left = seen_from(poses[b], goals[b, 0], goals[b, 1])
-        row = int(min(max(ahead / CELL, 0), WINDOW - 1))
-        column = int(min(max(WINDOW / 2 - left / CELL, 0), WINDOW - 1))
-        image[b, 2, WINDOW - 1 - row, column] = 1
+        row = int(min(max(ahead / cell, 0), side - 1))
+        column = int(min(max(side / 2 - left / cell, 0), side - 1))
+        image[b, 2, side - 1 - row, column] = 1
 
 
 @kernel
 def sweep(ranges: Array, bodies: Array, beams: Array) -> None:
     """Fill beams: from behind counterclockwise, first how near each sector is, then how far; unseen counts as far."""
-    far = CELL * WINDOW
     for b in range(len(beams)):
         beams[b, SECTORS:] = 1
         count = int(bodies[b, 8])
@@ -150,14 +152,14 @@ def sweep(ranges: Array, bodies: Array, beams: Array) -> None:
                 sector = int((bearing(beam, count, bodies[b, 9]) / (2 * np.pi) + 0.5) * SECTORS) % SECTORS
                 left = max(ranges[b, beam] - bodies[b, 1], 0.0)
                 beams[b, sector] = max(beams[b, sector], 1 - left / NEAR)
-                beams[b, SECTORS + sector] = min(beams[b, SECTORS + sector], left / far)
+                beams[b, SECTORS + sector] = min(beams[b, SECTORS + sector], left / FAR)
 
 
 @kernel
 def point(
     poses: Array, before: Array, speeds: Array, last: Array, goals: Array, blocked: Array, bodies: Array, compass: Array
 ) -> None:
-    """Fill compasses of zeros; a direction is told by its share in the two nearest of BEARINGS."""
+    """Fill compasses of zeros; a direction is told by its share in the two nearest of BEARINGS, a place by waves."""
     for b in range(len(compass)):
         told, pose = compass[b, BEARINGS:], poses[b]
         ahead, left = seen_from(pose, goals[b, 0], goals[b, 1])
@@ -166,15 +168,18 @@ def point(
         compass[b, int(turn) % BEARINGS] = 1 - turn % 1
         compass[b, (int(turn) + 1) % BEARINGS] = turn % 1
         moved = carried((pose[0], pose[1], pose[2]), (before[b, 0], before[b, 1], before[b, 2]), ORIGIN)
-        told[0], told[1] = log1p(far), min(far / (CELL * WINDOW), 1.0)
+        told[0], told[1] = log1p(far), min(far / FAR, 1.0)
         told[2], told[3] = speeds[b, 0] / bodies[b, 3], speeds[b, 1] / bodies[b, 4]
         told[4], told[5], told[6] = moved
         told[7], told[8] = last[b, 0], last[b, 1]
         told[9], told[10] = np.cos(last[b, 2]), np.sin(last[b, 2])
         told[11] = blocked[b]
         told[12], told[13] = np.cos(pose[2]), np.sin(pose[2])
-        told[14], told[15] = pose[0] / bodies[b, 11], pose[1] / bodies[b, 11]
-        told[16], told[17] = goals[b, 0] / bodies[b, 11], goals[b, 1] / bodies[b, 11]
+        for k, place in enumerate((pose[0], pose[1], goals[b, 0], goals[b, 1])):
+            for wave in range(WAVES):
+                angle = np.pi * 2**wave * place / bodies[b, 11]
+                at = 14 + 2 * (k * WAVES + wave)
+                told[at], told[at + 1] = np.cos(angle), np.sin(angle)
 
 
 def open_choices(inputs: RobotInputs) -> Array:

@@ -50,8 +50,7 @@ def _on_the_way(easy: MapFamily, full: MapFamily, share: float) -> MapFamily:
 def _between(easy: Any, full: Any, share: float) -> Any:
     if isinstance(easy, tuple | list) and isinstance(full, tuple | list):
         return type(easy)(_between(a, b, share) for a, b in zip(easy, full, strict=True))
-    if type(easy) is type(full) is int:
-        return round(easy + share * (full - easy))
-    if isinstance(easy, float) and isinstance(full, float):
-        return easy + share * (full - easy)
+    if {type(easy), type(full)} <= {int, float}:
+        between = easy + share * (full - easy)
+        return between if isinstance(full, float) else round(between)
     return easy

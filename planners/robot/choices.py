@@ -14,7 +14,7 @@ import numpy as np
 
 from fogbench.planners.robot.pilot import MARGINS, safe
 from fogbench.worlds.kernel import kernel
-from fogbench.worlds.robot.driving import ASIDE, Limits, Pose, aim, carried, wrapped
+from fogbench.worlds.robot.driving import ASIDE, Limits, Pose, aim, carried
 from fogbench.worlds.robot.rules import TICK
 from fogbench.worlds.robot.walls import clearance
 from fogbench.worlds.types import Array
@@ -43,7 +43,7 @@ def _poses() -> Array:
     forward, left = (axis.ravel() for axis in np.meshgrid(steps, steps, indexing="ij"))
     places = np.delete(np.stack([forward, left, np.arctan2(left, forward)], -1), OWN, 0)
     turns = np.zeros((TURNS, 3))
-    turns[:, 2] = wrapped(2 * pi * np.arange(TURNS) / TURNS)
+    turns[:, 2] = 2 * pi * np.arange(TURNS) / TURNS
     return np.concatenate([places, turns])
 
 

@@ -41,21 +41,22 @@ class RobotTeacher:
         right = np.zeros(len(CHOICES), np.bool_)
         if self.waypoint is None or self.place is None:
             return right
-        ahead, left, turn = carried(tuple(self.waypoint), self.place, ORIGIN)
+        x, y, heading = self.waypoint
+        ahead, left, turn = carried((x, y, heading), self.place, ORIGIN)
         if hypot(ahead, left) < ARRIVED:
             first = int(turn % tau // (tau / TURNS))
-            right[[len(CHOICES) - TURNS + first, len(CHOICES) - TURNS + (first + 1) % TURNS]] = True
+            right[-TURNS:][[first % TURNS, (first + 1) % TURNS]] = True
             return right
         around = _around(ahead, left)
-        can = self._can_drive(around)
+        can = self._can_drive(self.place, around)
         right[around[can] if can.any() else around] = True
         return right
 
-    def _can_drive(self, choices: Array) -> Array:
+    def _can_drive(self, place: Pose, choices: Array) -> Array:
         """[n] bool, which of some choices are safe on the known map."""
         (_, body, cell, _), can = self.agent.task.sensor, np.empty(len(choices), np.bool_)
         can_drive(
-            self.agent.known.cells, cell, body.radius, self.place, *self.speeds,
+            self.agent.known.cells, cell, body.radius, place, *self.speeds,
             CHOICES[choices], body.stride, body.limits, body.ticks, can,
         )  # fmt: skip
         return can

@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 import torch
 
-from fogbench.learned.agent import MaskedAgent
 from fogbench.learned.encoding.robot import RobotEncoding, RobotViewpoint
-from fogbench.learned.encoding.robot_inputs import HERE
-from fogbench.learned.encoding.robot_sizes import BEARINGS, CELL, CHOICES, SECTORS, SEEN, WINDOW
+from fogbench.learned.encoding.robot_sizes import BEARINGS, CHOICES, SECTORS, seen_count
 from fogbench.learned.macn_robot import MacnRobot
-from fogbench.learned.policy import Policy
 from fogbench.planners.robot import choices
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.robot.conditions import RobotConditions
@@ -78,8 +75,8 @@ def test_sizes_say_what_there_is() -> None:
     _, viewpoint, _ = looks(1)[0]
     inputs = ENCODING.encode([viewpoint])
     assert CHOICES == len(choices.CHOICES) == len(ENCODING.outputs)
-    assert sum(part.shape[1] for part in inputs.beside) == SEEN
-    assert inputs.cells.tolist() == [HERE] == [95]
+    assert sum(part.shape[1] for part in inputs.beside) == seen_count(10) == POLICY.seen_count
+    assert inputs.cells.tolist() == [95]
 
 
 def test_an_image_is_what_beams_cross_and_meet() -> None:
@@ -88,19 +85,19 @@ def test_an_image_is_what_beams_cross_and_meet() -> None:
         observation, free, blocked = viewpoint.observation, np.zeros((10, 10)), np.zeros((10, 10))
         for angle, far in zip(bearings(observation, world.task), observation.view.tolist(), strict=True):
             ways = np.arange(0, far, 0.001) if far else np.zeros(1)
-            rows, columns = np.floor(ways * cos(angle) / CELL), np.floor(5 - ways * sin(angle) / CELL)
+            rows, columns = np.floor(ways * cos(angle) / 0.5), np.floor(5 - ways * sin(angle) / 0.5)
             inside = (rows >= 0) & (rows < 10) & (columns >= 0) & (columns < 10)
             free[9 - rows[inside].astype(int), columns[inside].astype(int)] = 1
-            row, column = int(far * cos(angle) // CELL), int((5 - far * sin(angle) / CELL) // 1)
+            row, column = int(far * cos(angle) // 0.5), int((5 - far * sin(angle) / 0.5) // 1)
             if 0 < far < world.task.sensor.lidar.range and 0 <= row < 10 and 0 <= column < 10:
                 blocked[9 - row, column] = 1
-        blocked.flat[HERE] = 0
+        blocked.flat[95] = 0
         image = ENCODING.encode([viewpoint]).image[0].numpy()
         assert np.array_equal(image[1], blocked)
         assert np.sum(image[0] != free * (1 - blocked)) <= 1  # a corner may be cut by less than a millimetre
         assert not (image[0] * image[1]).any()
         ahead, left = as_seen(state.told, *world.task.goal)
-        row, column = np.clip([int(np.floor(ahead / CELL)), int(np.floor(5 - left / CELL))], 0, WINDOW - 1)
+        row, column = np.clip([int(np.floor(ahead / 0.5)), int(np.floor(5 - left / 0.5))], 0, 9)
         assert np.argwhere(image[2]).tolist() == [[9 - row, column]]
 
 
@@ -130,7 +127,9 @@ def test_a_compass_by_hand() -> None:
     expected = [log1p(far), min(far / 5, 1), state.v / 1.0, state.w / 2.0]
     expected += [*as_seen(world.start, x, y), heading - world.start[2], 0.6, 0.2]
     turn = atan2(0.2, 0.6)
-    expected += [cos(turn), sin(turn), 0, cos(heading), sin(heading), x / 9, y / 9, goal[0] / 9, goal[1] / 9]
+    expected += [cos(turn), sin(turn), 0, cos(heading), sin(heading)]
+    waves = [pi * share * side / 9 for side in (x, y, *goal) for share in (1, 2, 4)]
+    expected += [part for wave in waves for part in (cos(wave), sin(wave))]
     assert np.allclose(compass[BEARINGS:], expected, atol=1e-5)
 
 
@@ -173,29 +172,32 @@ def test_open_is_what_can_be_driven_on_the_map_of_one_scan() -> None:
     assert closed > 50
 
 
-def test_who_is_masked_takes_no_closed_choice() -> None:
-    """Over whole episodes, with weights drawn at random; the same weights without a mask do."""
-    policy, plain = (
-        MacnRobot(checkpoint="none", memory="lstm", features=16, hidden=16, masked=masked) for masked in (True, False)
-    )
-    shares = {masked: np.mean([*taken(policy)]) for masked, policy in ((True, policy), (False, plain))}
-    assert shares[True] == 1
-    assert shares[False] < 1
-
-
-def taken(policy: Policy) -> Any:
-    """Whether each output that was taken in some episodes was open."""
+@pytest.mark.parametrize("masked", [True, False])
+def test_who_is_masked_takes_no_closed_choice(masked: bool) -> None:
+    """Whatever a network says, in whole episodes; who is not masked does."""
+    policy, was_open = POLICY.model_copy(update={"masked": masked}), list[bool]()
+    torch.manual_seed(0)
     for seed in range(6):
-        world, luck = drawn(seed), np.random.default_rng(0)
+        world, luck = drawn(seed), np.random.default_rng(seed)
         agent: Any = policy.start(world.task, luck)
-        assert isinstance(agent, MaskedAgent) == policy.masked  # type: ignore[attr-defined]  # all of robots have it
+        agent.network = lambda inputs, state: (torch.randn(len(inputs.image), CHOICES), state)
         state = world.reset()
         for _ in range(25):
-            inputs = agent.perceive(world.sense(state, luck))
-            scores = agent.decide(inputs)
-            weighed = agent.weighed(scores, inputs)
-            yield bool(agent.encoding.open(inputs)[0, int(weighed.argmax())])
-            step = world.step(state, agent.action, luck)
+            observation = world.sense(state, luck)
+            waypoint = agent.act(observation)
+            (output,) = np.flatnonzero((agent.viewpoint.last == choices.CHOICES).all(1))
+            was_open.append(bool(opened(world, observation, state)[output]))
+            step = world.step(state, waypoint, luck)
             state = step.state
             if step.collided or step.reached:
                 break
+    assert all(was_open) == masked
+
+
+def opened(world: RobotWorld, observation: Observation, state: Any) -> Array:
+    """[A] bool, the choices that are open to a robot at its true speeds."""
+    viewpoint = ENCODING.start(world.task)
+    viewpoint.see(observation)
+    viewpoint.speeds = state.v, state.w
+    is_open: Array = ENCODING.open(ENCODING.encode([viewpoint]))[0]
+    return is_open

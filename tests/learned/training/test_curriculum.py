@@ -11,6 +11,7 @@ from fogbench.worlds.maps.families.maze import Maze
 from fogbench.worlds.maps.families.rooms import Rooms
 from fogbench.worlds.maps.families.tunnel import Tunnel
 from fogbench.worlds.mistake import Mistake
+from fogbench.worlds.robot.conditions import RobotConditions
 from fogbench.worlds.types import MapFamily
 
 EASY = Blobs(size=32, obstacles=(2, 2), obstacle_size=(1, 2))
@@ -58,6 +59,15 @@ def test_goals_move_away_in_step(kind: type[GridConditions | GraphConditions]) -
     own = kind.model_validate(block)
     for share, distance in ((0, (1, 2)), (0.5, (2, 12)), (1, (3, 21))):
         assert farther((1, 2), own, share) == kind.model_validate({**block, "tasks": {"distance": distance}})
+
+
+def test_goals_move_away_in_metres() -> None:
+    """Bounds that are no whole numbers grow from whole ones, and are not rounded."""
+    block = {"tasks": {"distance": [8, 59]}, "budget": {"steps": 90}}
+    own = RobotConditions.model_validate(block)
+    half = RobotConditions.model_validate({**block, "tasks": {"distance": [5, 32]}})
+    assert farther((2, 5), own, 0.5) == half
+    assert farther((2, 5), own, 1) == own
 
 
 def test_goals_move_away_to_bounds_alone() -> None:

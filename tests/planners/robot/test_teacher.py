@@ -78,6 +78,7 @@ def test_targets_by_hand() -> None:
     assert names(seen(teacher, (0.1, 0.1, 0.0))) == beside
     assert names(seen(teacher, (0.0, 0.0, 0.1))) == {"turn by 0 degrees", "turn by 45 degrees"}
     assert names(seen(teacher, (0.0, 0.0, -0.1))) == {"turn by 315 degrees", "turn by 0 degrees"}
+    assert "turn by 0 degrees" in names(seen(teacher, (0.0, 0.0, -1e-17)))
     assert names(seen(teacher, None)) == set()
     assert len(CHOICES) - TURNS == 120
 

@@ -94,10 +94,10 @@ def test_the_body_follows_its_commands(radius: float, v: float, w: float) -> Non
 
 
 def test_the_unicycle_ends_where_the_body_does() -> None:
-    """After 600 single decisions: within a centimetre at the 95th percentile."""
+    """After each of 5000 decisions: within a centimetre at the 95th percentile."""
     sim, rng, apart = Simulation(HALL, 0.1, BODY), np.random.default_rng(0), []
     state, pose, v, w = sim.start((10.0, 10.0, 0.0)), (10.0, 10.0, 0.0), 0.0, 0.0
-    for _ in range(600):
+    for _ in range(5000):
         far, angle, heading = rng.uniform((0, -pi, -pi), (1, pi, pi)).tolist()
         middle = hypot(pose[0] - 10, pose[1] - 10) > 6
         waypoint = (
@@ -132,12 +132,14 @@ def test_both_touch_the_same_walls(strew: Strew) -> None:
 
 
 def test_random_actions_never_leave_the_walls(strew: Strew) -> None:
-    """Whatever is asked for: all is finite, and the body never overlaps a wall by more than 5 cm."""
+    """A thousand sequences, 400,000 steps: all is finite, and the body never overlaps a wall by more than 5 cm."""
     deepest = 0.0
-    for seed in range(6):
-        world, rng = strew(seed, boxes=16, rules={"collision": "blocked"}), np.random.default_rng(seed)
-        sim, state = simulation(world), world.reset()
-        for _ in range(60):
+    for seed in range(1000):
+        rng = np.random.default_rng(seed)
+        if seed % 50 == 0:
+            world = strew(seed, boxes=16, rules={"collision": "blocked"})
+            sim, state = simulation(world), world.reset()
+        for _ in range(4):  # each goes on where the last one ended, mostly at a wall
             waypoint = Waypoint(*(np.array(state.place) + rng.uniform(-1.5, 1.5, 3)).tolist())
             state = world.step(state, waypoint, rng).state
             assert np.isfinite(state.physics).all()
