@@ -23,32 +23,50 @@ from fogbench.learned.macn import Macn
 from fogbench.learned.policy import Policy
 from fogbench.learned.value_iteration import value_iteration as vi
 from fogbench.worlds.conditions import BudgetSettings, Tasks
+from fogbench.worlds.graph.conditions import GraphConditions
+from fogbench.worlds.graph.families.random_graph import RandomGraph
 from fogbench.worlds.grid.conditions import GridConditions
 from fogbench.worlds.maps.families.blobs import Blobs
+from fogbench.worlds.robot.conditions import RobotConditions
 from fogbench.worlds.types import Observation
 
 THREADS = 1
 ROUNDS, DECISIONS = 100, 10
-CONDITIONS = GridConditions(budget=BudgetSettings(steps=40), tasks=Tasks(distance=(1, 40)))
-WORLD = Blobs(size=16, obstacles=(3, 12), obstacle_size=(1, 3)).sample(np.random.default_rng(0), 0, CONDITIONS)
+BUDGET = BudgetSettings(steps=40)
+GRID = GridConditions(budget=BUDGET, tasks=Tasks(distance=(1, 40)))
+WORLDS: dict[str, Any] = {
+    "grid": Blobs(size=16, obstacles=(3, 12), obstacle_size=(1, 3)).sample(np.random.default_rng(0), 0, GRID),
+    "graph": RandomGraph(nodes=16, mean_degree=3).sample(np.random.default_rng(0), 0, GraphConditions(budget=BUDGET)),
+    "robot": Blobs(size=200, obstacles=(60, 60), obstacle_size=(5, 20)).sample(
+        np.random.default_rng(0), 0, RobotConditions(budget=BUDGET)
+    ),
+}
+PAPER = {"window": 200, "cell": 0.1, "iterations": 40, "hidden": 512, "memory_rows": 1024, "word": 512, "writes": 16}
+SIZES: list[tuple[str, dict[str, Any]]] = [
+    *((name, {}) for name in LEARNED),
+    ("macn_robot", {"masked": True}),
+    ("macn_robot", PAPER),
+]
+"""Policies with the settings that they are timed with; the last is the paper's robot."""
 
 Decide = Callable[[], object]
 
 
 def begun(policy: Policy) -> tuple[PolicyAgent, Observation]:
     """An agent that has decided once, and what it sees."""
-    agent = cast(PolicyAgent, policy.start(WORLD.task, np.random.default_rng(0)))
-    observation = WORLD.sense(WORLD.reset(), np.random.default_rng(0))
+    (kind,) = policy.kinds
+    world, luck = WORLDS[kind], np.random.default_rng(0)
+    agent, observation = cast(PolicyAgent, policy.start(world.task, luck)), world.sense(world.reset(), luck)
     agent.act(observation)
     return agent, observation
 
 
-@pytest.mark.parametrize("name", LEARNED)
-def test_decision(benchmark: BenchmarkFixture, name: str) -> None:
-    """A decision of each policy."""
+@pytest.mark.parametrize(("name", "fields"), SIZES, ids=[" ".join((name, *fields)) for name, fields in SIZES])
+def test_decision(benchmark: BenchmarkFixture, name: str, fields: dict[str, Any]) -> None:
+    """A decision of each policy, in a world of its kind."""
     benchmark.group = "decision, one thread"
     policy = cast(type[Policy], load(AGENT, name, LEARNED[name]))
-    agent, observation = begun(policy(checkpoint="none"))
+    agent, observation = begun(policy(checkpoint="none", **fields))
     benchmark(agent.act, observation)
 
 
