@@ -10,6 +10,9 @@ from fogbench.planners.robot.guides import AStarGuide
 from fogbench.worlds.robot.driving import ARRIVED, Pose, carried
 from fogbench.worlds.types import Array, Observation, Task, Waypoint
 
+TURNED = 0.1
+"""Radians: a robot that has turned by more is not stuck, though the pilot did not send it there."""
+
 
 class RobotTeacher:
     """Follows one robot's known map and tells which choices are nearest to the waypoint that A* would send.
@@ -29,6 +32,8 @@ class RobotTeacher:
         self.place = observation.place
         if before is not None:
             pilot.v, pilot.w = self._speeds(before, observation)
+            if abs(remainder(self.place[2] - before[2], tau)) > TURNED:
+                pilot.stayed = 0
         self.speeds = pilot.v, pilot.w
         self.waypoint = self.agent.act(observation)
 

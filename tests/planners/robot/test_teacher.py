@@ -10,6 +10,7 @@ from fogbench.planners import judge_of
 from fogbench.planners.astar import AStar
 from fogbench.planners.judging import Judge
 from fogbench.planners.robot.choices import CHOICES, NAMES, TURNS
+from fogbench.planners.robot.pilot import PATIENCE
 from fogbench.planners.robot.teacher import RobotTeacher
 from fogbench.worlds.maps.families.blobs import Blobs
 from fogbench.worlds.robot.conditions import RobotConditions
@@ -92,6 +93,17 @@ def test_of_places_around_those_count_that_are_safe() -> None:
     assert names(teacher) == {"0.8 m ahead, -0.2 m left", "1 m ahead, -0.2 m left"}
     teacher.agent.known.cells[30:60, 48:60] = 2
     assert len(names(seen(teacher, (0.9, -0.1, 0.0)))) == 4
+
+
+def test_who_turns_is_not_stuck() -> None:
+    """The pilot makes room for a robot that stays as it is, and not for one that looks around."""
+    still, turning = RobotTeacher(drawn(0).task), RobotTeacher(drawn(0).task)
+    view = np.full(90, 5.0, np.float32)
+    for step in range(8):
+        still.see(Observation(step, (4.5, 4.5, 0.0), view, False))
+        turning.see(Observation(step, (4.5, 4.5, 0.5 * (step % 2)), view, False))
+    assert still.agent.pilot.stayed > PATIENCE
+    assert turning.agent.pilot.stayed <= 1
 
 
 def test_speeds_follow_from_poses() -> None:
