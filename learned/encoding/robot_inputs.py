@@ -20,7 +20,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from fogbench.learned.encoding.robot_sizes import BEAMS, BEARINGS, CHANNELS, COMPASS, SECTORS, WAVES
+from fogbench.learned.encoding.robot_sizes import BEAMS, BEARINGS, CHANNELS, COMPASS, FAR, RINGS, SECTORS, WAVES
 from fogbench.planners.robot.choices import CHOICES, ORIGIN, can_drive, span
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.robot.driving import Limits, Pose, carried, command, move
@@ -28,9 +28,6 @@ from fogbench.worlds.robot.known import fuse
 from fogbench.worlds.robot.lidar import bearing
 from fogbench.worlds.robot.rules import Outfit
 from fogbench.worlds.types import FREE, UNKNOWN, Array
-
-NEAR, FAR = 1.0, 5.0
-"""Metres in which a wall is near, and beyond which it is far, or the goal is."""
 
 
 class Told(NamedTuple):
@@ -143,16 +140,18 @@ def draw(ranges: Array, poses: Array, goals: Array, bodies: Array, cell: float, 
 
 @kernel
 def sweep(ranges: Array, bodies: Array, beams: Array) -> None:
-    """Fill beams: from behind counterclockwise, first how near each sector is, then how far; unseen counts as far."""
+    """Fill beams: of each sector, from behind counterclockwise, how near a wall is in each ring, and how far it is."""
+    rings = len(RINGS)
     for b in range(len(beams)):
-        beams[b, SECTORS:] = 1
-        count = int(bodies[b, 8])
+        told, count = beams[b].reshape((rings + 1, SECTORS)), int(bodies[b, 8])
+        told[rings] = 1  # where nothing is seen
         for beam in range(count):
             if ranges[b, beam] > 0:
                 sector = int((bearing(beam, count, bodies[b, 9]) / (2 * np.pi) + 0.5) * SECTORS) % SECTORS
                 left = max(ranges[b, beam] - bodies[b, 1], 0.0)
-                beams[b, sector] = max(beams[b, sector], 1 - left / NEAR)
-                beams[b, SECTORS + sector] = min(beams[b, SECTORS + sector], left / FAR)
+                told[rings, sector] = min(told[rings, sector], left / FAR)
+                for ring in range(rings):
+                    told[ring, sector] = max(told[ring, sector], 1 - left / RINGS[ring])
 
 
 @kernel

@@ -6,8 +6,14 @@ CHANNELS = 3
 SECTORS = 72
 """All around the robot, of each the nearest reading."""
 
-BEAMS = 2 * SECTORS
-"""Numbers of the sectors: how near a wall is, and how far."""
+RINGS = (0.25, 0.5, 1.0, 2.0)
+"""Metres from the body, within each of which it is told how near a wall is."""
+
+FAR = 5.0
+"""Metres beyond which walls and goals are far."""
+
+BEAMS = (len(RINGS) + 1) * SECTORS
+"""Numbers of the sectors: how near a wall is in each ring, and how far."""
 
 BEARINGS = 24
 """Directions that the goal's is told by."""

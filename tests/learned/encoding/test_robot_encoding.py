@@ -102,15 +102,16 @@ def test_an_image_is_what_beams_cross_and_meet() -> None:
 
 
 def test_beams_tell_the_nearest_of_each_sector() -> None:
-    """From behind counterclockwise, less the radius: near within a metre, far within the window."""
+    """From behind counterclockwise, less the radius: how near within each ring, then how far within 5 m."""
     for world, viewpoint, _ in looks(6):
         observation, least = viewpoint.observation, np.full(SECTORS, np.inf)
         for angle, far in zip(bearings(observation, world.task), observation.view.tolist(), strict=True):
             sector = int((angle / (2 * pi) + 0.5) * SECTORS) % SECTORS
             least[sector] = min(least[sector], max(far - 0.2, 0.0) if far else np.inf)
-        beams = ENCODING.encode([viewpoint]).beams[0].numpy()
-        assert np.allclose(beams[:SECTORS], np.maximum(1 - least, 0), atol=1e-6)
-        assert np.allclose(beams[SECTORS:], np.minimum(least / 5, 1), atol=1e-6)
+        beams = ENCODING.encode([viewpoint]).beams[0].numpy().reshape(5, SECTORS)
+        near = np.maximum(1 - least / np.array([[0.25], [0.5], [1], [2]]), 0)
+        assert np.allclose(beams[:4], near, atol=1e-6)
+        assert np.allclose(beams[4], np.minimum(least / 5, 1), atol=1e-6)
 
 
 def test_a_compass_by_hand() -> None:
