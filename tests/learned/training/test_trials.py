@@ -38,5 +38,5 @@ def test_a_kind_without_a_judge_teaches_nothing(
     monkeypatch.delitem(JUDGES, "grid")
     monkeypatch.setitem(JUDGES, "ring", Blind)
     assert refusal(world, hindsight=False) == (
-        "got worlds of kind grid, where nobody says which actions are right; expected one of graph, ring"
+        "got worlds of kind grid, where nobody says which actions are right; expected one of graph, robot, ring"
     )
