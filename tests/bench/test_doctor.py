@@ -37,8 +37,8 @@ maps = "maps: {random_graph: {nodes: 16, mean_degree: 3}}"
 other = "name: graphs\\n" + maps + "\\nbudget: {steps: 9}\\nepisodes: 1\\nagents: [" + graphs + "]"
 robots = "{macn_robot: {checkpoint: none}}, {vin_robot: {checkpoint: none}}, {cnn_memory_robot: {checkpoint: none}}"
 robots += ", {macn_robot: {checkpoint: none, masked: true, label: masked}}"
-halls = "kind: robot\nmaps: {blobs: {size: 90, obstacles: [9, 9], obstacle_size: [5, 10]}}"
-third = "name: robots\n" + halls + "\nbudget: {steps: 9}\nepisodes: 1\nagents: [" + robots + "]"
+halls = "kind: robot\\nmaps: {blobs: {size: 90, obstacles: [9, 9], obstacle_size: [5, 10]}}"
+third = "name: robots\\n" + halls + "\\nbudget: {steps: 9}\\nepisodes: 1\\nagents: [" + robots + "]"
 texts = [(text, Path("networks.yaml")), (other, Path("graphs.yaml")), (third, Path("robots.yaml"))]
 texts += [(path.read_text("utf-8"), path) for path in find(None)]
 for text, path in texts:

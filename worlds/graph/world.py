@@ -159,7 +159,8 @@ def _locate(coordinates: Array, node: int, view: Array) -> None:
 @kernel
 def length_of(starts: Array, ends: Array, lengths: Array, a: int, b: int) -> float:
     """The length of the edge between two nodes; infinite where there is none."""
+    found: float = np.inf
     for k in range(starts[a], starts[a + 1]):
         if ends[k] == b:
-            return lengths[k]
-    return np.inf
+            found = lengths[k]
+    return found
