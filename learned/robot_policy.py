@@ -13,7 +13,7 @@ from fogbench.worlds.types import Agent, Task
 
 
 class RobotPolicy(Showing):
-    """A network as an agent in robot worlds: it sees the current scan alone (Khan et al. 2018, section 4)."""
+    """A network as an agent in robot worlds: it sees the current scan, not the map (Khan et al. 2018, section 4)."""
 
     kinds: ClassVar[frozenset[str]] = frozenset({"robot"})
 
