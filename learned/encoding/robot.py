@@ -5,9 +5,9 @@ from typing import Protocol
 
 import numpy as np
 
-from fogbench.learned.encoding.robot_inputs import RobotInputs, Told, body_of, encode, left_with, open_choices
+from fogbench.learned.encoding.robot_inputs import RobotInputs, Told, body_of, encode, open_choices
 from fogbench.planners.robot.choices import CHOICES, NAMES, ORIGIN, chosen
-from fogbench.worlds.robot.driving import Pose
+from fogbench.worlds.robot.driving import Pose, speeds_after
 from fogbench.worlds.robot.rules import Outfit
 from fogbench.worlds.types import Array, Observation, Task, Waypoint
 
@@ -50,7 +50,7 @@ class RobotViewpoint:
         """The waypoint of a choice; nothing of the look is carried on but the pose."""
         body, place = self.outfit.body, self.observation.place
         waypoint = chosen(CHOICES, output, place, body.stride)
-        self.speeds = left_with(place, *self.speeds, waypoint, body.limits, body.ticks)
+        self.speeds = speeds_after(place, *self.speeds, waypoint, body.limits, body.ticks)
         self.before, self.last = place, tuple(CHOICES[output].tolist())
         del self.observation
         return Waypoint(*waypoint)

@@ -23,7 +23,7 @@ from torch import Tensor
 from fogbench.learned.encoding.robot_sizes import BEAMS, BEARINGS, CHANNELS, COMPASS, FAR, RINGS, SECTORS, WAVES
 from fogbench.planners.robot.choices import CHOICES, ORIGIN, can_drive, span
 from fogbench.worlds.kernel import kernel
-from fogbench.worlds.robot.driving import Limits, Pose, carried, command, move
+from fogbench.worlds.robot.driving import carried
 from fogbench.worlds.robot.known import fuse
 from fogbench.worlds.robot.lidar import bearing
 from fogbench.worlds.robot.rules import Outfit
@@ -89,15 +89,6 @@ def body_of(outfit: Outfit, extent: tuple[float, ...]) -> tuple[float, ...]:
     lidar, body, cell, _ = outfit
     driven = cell, body.radius, body.stride, *body.limits, body.ticks
     return *driven, lidar.beams, lidar.arc, lidar.range, max(extent)
-
-
-@kernel
-def left_with(pose: Pose, v: float, w: float, waypoint: Pose, limits: Limits, ticks: int) -> tuple[float, float]:
-    """The speeds after a decision that no wall cuts short."""
-    for _ in range(ticks):
-        v, w = command(pose, v, w, waypoint, limits)
-        pose = move(pose, v, w)
-    return v, w
 
 
 def encode(told: Told, side: int, cell: float) -> RobotInputs:

@@ -11,7 +11,7 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 
 from fogbench.worlds.kernel import kernel
-from fogbench.worlds.robot.driving import Limits, Pose, aim
+from fogbench.worlds.robot.driving import Limits, Pose, aim, speeds_after
 from fogbench.worlds.robot.rules import Outfit
 from fogbench.worlds.robot.unicycle import drive
 from fogbench.worlds.robot.walls import clearance, touches
@@ -68,7 +68,7 @@ class Pilot:
         if chosen is None:
             ahead = path[min(len(path) - 1, 3)]
             chosen = (pose[0], pose[1], atan2(ahead[1] - pose[1], ahead[0] - pose[0]))
-        return self._sent(cells, pose, chosen)
+        return self._sent(pose, chosen)
 
     def _ahead(self, cells: Array, pose: Pose, path: Array) -> Pose | None:
         """Towards the farthest point of the path that is in sight and safe, with the heading of the path behind it."""
@@ -103,11 +103,10 @@ class Pilot:
         found.sort()
         return found[(self.stayed - PATIENCE - 1) // 2 % len(found)][1] if found else None
 
-    def _sent(self, cells: Array, pose: Pose, chosen: Pose) -> Waypoint:
+    def _sent(self, pose: Pose, chosen: Pose) -> Waypoint:
         """The waypoint, after note was taken of the speed that it will leave."""
         body = self.outfit.body
-        done = drive(cells, self.outfit.cell, 0.0, pose, self.v, self.w, chosen, body.limits, body.ticks, NOWHERE, -1.0)
-        self.v, self.w = done[1], done[2]
+        self.v, self.w = speeds_after(pose, self.v, self.w, chosen, body.limits, body.ticks)
         return Waypoint(*map(float, chosen))
 
 

@@ -66,6 +66,15 @@ def move(pose: Pose, v: float, w: float) -> Pose:
 
 
 @kernel
+def speeds_after(pose: Pose, v: float, w: float, waypoint: Pose, limits: Limits, ticks: int) -> tuple[float, float]:
+    """The speeds after a decision that no wall cuts short."""
+    for _ in range(ticks):
+        v, w = command(pose, v, w, waypoint, limits)
+        pose = move(pose, v, w)
+    return v, w
+
+
+@kernel
 def carried(pose: Pose, here: Pose, there: Pose) -> Pose:
     """A pose that is to `there` as the given one is to `here`."""
     turn = there[2] - here[2]
