@@ -39,7 +39,7 @@ REFERENCES = {
 
 JUDGES = {
     "grid": "fogbench.planners.grid_judge:GridJudge",
-    "graph": "fogbench.planners.graph_judge:GraphJudge",
+    "graph": "fogbench.planners.graph.judge:GraphJudge",
     "robot": "fogbench.planners.robot.teacher:RobotTeacher",
 }
 """What knows which actions are right (see `judging`), by the kind of world; others by the group `fogbench.judges`."""

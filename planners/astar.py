@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from fogbench.planners.graph_astar import GraphAStarAgent
+from fogbench.planners.graph.astar import GraphAStarAgent
 from fogbench.planners.robot.agent import RobotAgent
 from fogbench.planners.robot.guides import AStarGuide
 from fogbench.planners.route import Route

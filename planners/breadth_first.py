@@ -4,8 +4,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogbench.planners.graph_search import first_steps, is_known
-from fogbench.worlds.graph.known import KnownGraph
+from fogbench.planners.graph.agent import GraphAgent
+from fogbench.planners.graph.search import first_steps, is_known
+from fogbench.worlds.graph.known import NONE
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import Observation, Task
 
@@ -28,39 +29,38 @@ class BreadthFirst(Settings):
         return 0
 
 
-class BreadthFirstAgent:
+class BreadthFirstAgent(GraphAgent):
     """One episode."""
 
     def __init__(self, task: Task) -> None:
         """Nothing is known yet."""
-        self.goal: int = task.goal
-        self.known = KnownGraph(task.extent)
+        super().__init__(task)
         self.queue = np.empty(len(self.known.heads), np.int32)  # [N], nodes as they were first seen
         self.first = self.last = 0  # of those that wait in it, and behind them
-        self.expanded = 0
 
-    def act(self, observation: Observation) -> int | None:
-        """The node to go to; gives up where all was visited."""
-        before = self.known.heads.copy()
-        if self.known.update(observation):
+    def step(self, observation: Observation, *, fresh: bool) -> tuple[int, int]:
+        """To the node that waits longest, or to the goal."""
+        if fresh:
             row = np.flatnonzero(np.isfinite(observation.view[:, 0]))
-            fresh = [node for node in row.tolist() if not is_known(self.known.visited, before, node)]
-            self.queue[self.last : self.last + len(fresh)] = fresh
-            self.last += len(fresh)
+            seen = [node for node in row.tolist() if self._was_just_seen(node)]
+            self.queue[self.last : self.last + len(seen)] = seen
+            self.last += len(seen)
         while self.first < self.last and self.known.visited[self.queue[self.first]]:
             self.first += 1
-        seen = is_known(*self.known.arrays[:2], self.goal)
-        if not seen and self.first == self.last:
-            return None
-        target = self.goal if seen else int(self.queue[self.first])
+        target = self.goal if is_known(*self.known.arrays[:2], self.goal) else self._next()
+        if target == NONE:
+            return NONE, 0
         steps, expanded = first_steps(*self.known.arrays, observation.place, target)
-        self.expanded += expanded
-        return int(steps[0])
+        return int(steps[0]), expanded
 
     def memory_bytes(self) -> int:
         """The known graph and the queue."""
-        return self.known.bytes + self.queue.nbytes
+        return super().memory_bytes() + self.queue.nbytes
 
-    def search_nodes(self) -> int:
-        """Nodes expanded so far."""
-        return self.expanded
+    def _was_just_seen(self, node: int) -> bool:
+        """Whether a neighbour has no known edge but that to the node of now."""
+        return not self.known.visited[node] and self.known.links[self.known.heads[node], 0] == NONE
+
+    def _next(self) -> int:
+        """The node that waits longest; NONE where none does."""
+        return int(self.queue[self.first]) if self.first < self.last else NONE

@@ -5,7 +5,7 @@ from typing import ClassVar
 import numpy as np
 
 from fogbench.planners.astar import glance
-from fogbench.planners.graph_dstar_lite import GraphDStarLiteAgent
+from fogbench.planners.graph.dstar_lite import GraphDStarLiteAgent
 from fogbench.planners.incremental import EMPTY, descend, replan
 from fogbench.planners.robot.agent import RobotAgent
 from fogbench.planners.robot.repairing import DStarLiteGuide

@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogbench.planners.graph_search import nearest_step
-from fogbench.worlds.graph.known import KnownGraph
+from fogbench.planners.graph.agent import GraphAgent
+from fogbench.planners.graph.search import nearest_step
 from fogbench.worlds.settings import Settings
 from fogbench.worlds.types import Observation, Task
 
@@ -25,26 +25,10 @@ class NearestUnvisited(Settings):
         return 0
 
 
-class NearestUnvisitedAgent:
+class NearestUnvisitedAgent(GraphAgent):
     """One episode."""
 
-    def __init__(self, task: Task) -> None:
-        """Nothing is known yet."""
-        self.goal: int = task.goal
-        self.known = KnownGraph(task.extent)
-        self.expanded = 0
-
-    def act(self, observation: Observation) -> int | None:
-        """The node to go to; gives up where all was visited."""
-        self.known.update(observation)
-        step, expanded = nearest_step(*self.known.arrays, observation.place, self.goal)
-        self.expanded += expanded
-        return step if step >= 0 else None
-
-    def memory_bytes(self) -> int:
-        """The known graph."""
-        return self.known.bytes
-
-    def search_nodes(self) -> int:
-        """Nodes expanded so far."""
-        return self.expanded
+    def step(self, observation: Observation, *, fresh: bool) -> tuple[int, int]:
+        """To the goal, or to a node that was not visited."""
+        del fresh
+        return nearest_step(*self.known.arrays, observation.place, self.goal)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fogbench.planners.graph_search import nearest
+from fogbench.planners.graph.search import nearest
 from fogbench.worlds.graph.batch import GraphObservations
 from fogbench.worlds.graph.known_batch import KnownGraphs
 from fogbench.worlds.graph.world import GraphWorld

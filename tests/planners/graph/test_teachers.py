@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fogbench.planners.graph_judge import GraphJudge
-from fogbench.planners.graph_teachers import GraphTeachers
+from fogbench.planners.graph.judge import GraphJudge
+from fogbench.planners.graph.teachers import GraphTeachers
 from fogbench.worlds.batch import batch_of
 from fogbench.worlds.graph.world import GraphWorld
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fogbench.planners.graph_search import nearest
+from fogbench.planners.graph.search import nearest
 from fogbench.planners.judging import NOT_JUDGED, Verdict
 from fogbench.worlds.graph.known import KnownGraph
 from fogbench.worlds.types import Array, Observation, Task
@@ -32,7 +32,7 @@ class GraphJudge:
     def side_by_side(cls, slots: int, *, hindsight: bool) -> "Teachers":
         """Teachers of so many episodes; they are named by a string, for no episode depends on them."""
         del hindsight  # there is none on graphs
-        made: Teachers = resolve_name("fogbench.planners.graph_teachers:GraphTeachers")(slots)
+        made: Teachers = resolve_name("fogbench.planners.graph.teachers:GraphTeachers")(slots)
         return made
 
     def see(self, observation: Observation) -> None:

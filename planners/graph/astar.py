@@ -11,40 +11,25 @@ Words used here
 
 import numpy as np
 
-from fogbench.planners.graph_search import is_known
+from fogbench.planners.graph.agent import GraphAgent
+from fogbench.planners.graph.search import is_known
 from fogbench.worlds.graph.distances import pop, push
-from fogbench.worlds.graph.known import NONE, KnownGraph
+from fogbench.worlds.graph.known import NONE
 from fogbench.worlds.graph.networks import SLACK
 from fogbench.worlds.kernel import kernel
-from fogbench.worlds.types import Array, Observation, Task
+from fogbench.worlds.types import Array, Observation
 
 SHORT = 1 - SLACK
 """An edge may be so much shorter than the straight line between its ends."""
 
 
-class GraphAStarAgent:
-    """One episode: plans at each node, on all that is known by then."""
+class GraphAStarAgent(GraphAgent):
+    """One episode."""
 
-    def __init__(self, task: Task) -> None:
-        """Plan towards the task's goal."""
-        self.goal: int = task.goal
-        self.known = KnownGraph(task.extent)
-        self.expanded = 0
-
-    def act(self, observation: Observation) -> int | None:
-        """The node to go to; gives up where all was visited."""
-        self.known.update(observation)
-        step, expanded = search(*self.known.arrays, self.known.coordinates, observation.place, self.goal)
-        self.expanded += expanded
-        return step if step >= 0 else None
-
-    def memory_bytes(self) -> int:
-        """The known graph."""
-        return self.known.bytes
-
-    def search_nodes(self) -> int:
-        """Nodes expanded so far."""
-        return self.expanded
+    def step(self, observation: Observation, *, fresh: bool) -> tuple[int, int]:
+        """On a shortest way to the goal, as far as that is supposed."""
+        del fresh
+        return search(*self.known.arrays, self.known.coordinates, observation.place, self.goal)
 
 
 @kernel

@@ -8,15 +8,16 @@ Words used here (the paper's)
             node's own key
     keys    [N, 2], of the nodes in U; infinite for the others
 
-At a node that was seen and not visited, an edge straight to the goal is supposed, as in `graph_astar`.
+At a node that was seen and not visited, an edge straight to the goal is supposed, as A* does.
 """
 # ruff: noqa: N803, N806 (U is the name in the paper)
 
 import numpy as np
 
-from fogbench.planners.graph_astar import SHORT, exit_of, straight
+from fogbench.planners.graph.agent import GraphAgent
+from fogbench.planners.graph.astar import SHORT, exit_of, straight
 from fogbench.worlds.graph.distances import pop, push
-from fogbench.worlds.graph.known import NONE, KnownGraph
+from fogbench.worlds.graph.known import NONE
 from fogbench.worlds.kernel import kernel
 from fogbench.worlds.types import Array, Observation, Task
 
@@ -24,23 +25,20 @@ EMPTY = 64
 """Rows of a new U."""
 
 
-class GraphDStarLiteAgent:
+class GraphDStarLiteAgent(GraphAgent):
     """One episode of incremental search."""
 
     def __init__(self, task: Task) -> None:
         """Plan towards the task's goal."""
-        self.goal: int = task.goal
-        self.known = KnownGraph(task.extent)
+        super().__init__(task)
         size = len(self.known.heads)
         self.g, self.rhs, self.keys = np.full(size, np.inf), np.full(size, np.inf), np.full((size, 2), np.inf)
         self.queue, self.waiting = np.empty((EMPTY, 3)), 0
         self.last, self.k_m = -1, 0.0
-        self.expanded = 0
 
-    def act(self, observation: Observation) -> int | None:
-        """The node to go to; gives up where all was visited."""
+    def step(self, observation: Observation, *, fresh: bool) -> tuple[int, int]:
+        """The way of A*."""
         place = observation.place
-        fresh = self.known.update(observation)
         if self.last < 0:
             self.last = place
         known = *self.known.arrays, self.known.coordinates
@@ -48,17 +46,11 @@ class GraphDStarLiteAgent:
             *known, self.g, self.rhs, self.keys, self.queue, self.waiting, self.goal, place, self.last, self.k_m, fresh
         )
         self.last = place
-        self.expanded += expanded
-        step = descend(self.known.heads, self.known.links, self.known.lengths, self.g, place, self.goal)
-        return step if step >= 0 else None
+        return descend(self.known.heads, self.known.links, self.known.lengths, self.g, place, self.goal), expanded
 
     def memory_bytes(self) -> int:
         """The known graph, the costs and the queue."""
-        return self.known.bytes + sum(array.nbytes for array in (self.g, self.rhs, self.keys, self.queue))
-
-    def search_nodes(self) -> int:
-        """Nodes expanded so far."""
-        return self.expanded
+        return super().memory_bytes() + sum(array.nbytes for array in (self.g, self.rhs, self.keys, self.queue))
 
 
 @kernel

@@ -13,7 +13,7 @@ from scipy.stats import chisquare
 from fogbench.planners.astar import AStar
 from fogbench.planners.breadth_first import BreadthFirst
 from fogbench.planners.dstar_lite import DStarLite
-from fogbench.planners.graph_judge import GraphJudge
+from fogbench.planners.graph.judge import GraphJudge
 from fogbench.planners.nearest_unvisited import NearestUnvisited
 from fogbench.planners.random_walk import RandomWalk
 from fogbench.worlds.graph.world import GraphWorld
