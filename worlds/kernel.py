@@ -127,7 +127,6 @@ class _Forms:
 
     def load_overload(self, signature: object, context: Any) -> Any:
         """The form of a signature, from the first folder that has it; None if none has."""
-        context.refresh()
         for folder in FOLDERS:
             with suppress(Exception):  # missing, forbidden, or broken
                 content = self._file(folder, signature, context.codegen()).read_bytes()

@@ -10,6 +10,7 @@ import pickle
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from llvmlite.binding import address_of_symbol
 from numba import types
 from numba.core import config
 from numba.core.ccallback import CFunc
@@ -17,6 +18,7 @@ from numba.core.codegen import JITCPUCodegen, get_host_cpu_features
 from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 
@@ -88,16 +90,32 @@ def is_portable(form: Any) -> bool:
 
 
 def packed(form: Any) -> bytes:
-    """A form, with its machine code."""
+    """A form, with its machine code and the names of what that needs from outside."""
     dump: Any = dumps
-    content: bytes = dump(form._reduce())  # noqa: SLF001  as Numba's own cache does it
+    content: bytes = dump((_needs(form), form._reduce()))  # noqa: SLF001  as Numba's own cache does it
     return content
 
 
 def unpacked(content: bytes, context: Any) -> Any:
-    """Undo `packed`; what was not written by it may take the process down."""
+    """Undo `packed`; what was not written by it may take the process down.
+
+    Numba's own cache first loads all that compiling needs, for a third of a second in each process. Code that was
+    compiled before runs without, unless it needs something by a name that only comes with that.
+    """
+    needs, parts = pickle.loads(content)  # noqa: S301  `kernel` has written it
+    runtime: Any = rtsys
+    runtime.initialize(context)
+    if not all(map(address_of_symbol, needs)):
+        context.refresh()
     rebuild: Any = CompileResult._rebuild  # noqa: SLF001  likewise
-    return rebuild(context, *pickle.loads(content))  # noqa: S301  `kernel` has written it
+    return rebuild(context, *parts)
+
+
+def _needs(form: Any) -> list[str]:
+    """The names of the functions and variables that machine code uses and does not have; LLVM has its own itself."""
+    module = form.library._final_module  # noqa: SLF001  `inspect_llvm` prints it
+    names = [each.name for each in (*module.functions, *module.global_variables) if each.is_declaration]
+    return [name for name in names if not name.startswith("llvm.")]
 
 
 def processor(codegen: Any) -> object:

@@ -208,6 +208,19 @@ def test_kernels_that_hold_kernels_are_kept(folder: Path) -> None:
     assert [play(folder, "mine", lines) for _ in range(2)] == ["22 18 0 0", "22 18 1 1"]
 
 
+def test_what_compiles_is_loaded_only_where_it_is_needed(folder: Path) -> None:
+    """A process that reads its kernels does without, but for one that calls what is not there yet."""
+    lines = [
+        "import sys",
+        "from fogbench.worlds import numba_doors",
+        "loaded = lambda: 'numba.np.arraymath' in sys.modules",
+        "told = [kernel(lambda x: x + 0.5)(2), loaded()]",
+        "numba_doors.address_of_symbol = lambda name: None",
+        "print(*told, kernel(lambda x: x - 0.5)(2), loaded())",
+    ]
+    assert [play(folder, "mine", lines) for _ in range(2)] == ["2.5 True 1.5 True", "2.5 False 1.5 True"]
+
+
 def test_what_belongs_to_a_process_is_not_kept(folder: Path) -> None:
     """A kernel that holds an address, or a value that it was made with, is compiled in each process."""
     address = ["from ctypes import CDLL, c_int", "f = CDLL(None).abs", "f.argtypes, f.restype = [c_int], c_int"]
