@@ -1,21 +1,12 @@
 """The way back through the temporal links; the words are those of `fogbench.learned.dnc.links`."""
 
-from typing import Any
-
 from fogbench.learned.dnc.access import AccessState
+from fogbench.learned.dnc.all_links_back import link_all_back
 from fogbench.learned.dnc.job import Sizes, head_size
-from fogbench.learned.dnc.links import (
-    follow_pair,
-    follow_pair_alone,
-    link_pair,
-    link_pair_alone,
-    link_rows,
-    unwritten,
-)
+from fogbench.learned.dnc.links import unwritten
 from fogbench.learned.dnc.strongest import link_strongest_back
-from fogbench.learned.kernels.instructions import at, full, put, total
+from fogbench.learned.kernels.instructions import at, full, put
 from fogbench.learned.kernels.lane_arrays import add, clear, over, unfilled
-from fogbench.learned.kernels.lanes import LANES
 from fogbench.worlds.kernel import fused
 from fogbench.worlds.types import Array
 
@@ -55,104 +46,6 @@ def links_back(
                 heads[mode:], linked, before[first : first + rows], ahead[first:], back[first:],
                 d_heads[mode:], d_old.read_weights[first:],
             )  # fmt: skip
-
-
-@fused
-def link_all_back(
-    sizes: Sizes, i: int, links: Array, w: Array, p: Array, modes: Array, size: int, before: Array, d_read: Array,
-    d_new_links: Array, ahead: Array, back: Array, d_links: Array, d_w: Array, d_p: Array,
-) -> None:  # fmt: skip
-    """Back through all links of write head `i`; adds to `d_w` and `d_p`."""
-    rows, linked, alone, pitch = sizes[1], sizes[4], sizes[5], link_rows(sizes)
-    pair, d_row = unfilled(2 * rows, d_read), unfilled(rows, d_read)
-    for n in range(0, pitch, 2):
-        own = links[(i * pitch + n) * rows :]
-        if alone:
-            link_pair_alone(n, own, w, p, pair)
-            follow_pair_alone(n, pair, d_read, ahead, back, rows)
-        else:
-            link_pair(n, own, w, p, pair)
-            follow_pair(n, pair, d_read, ahead, back, rows)
-        for k in range(n, min(n + 2, pitch)):
-            first = (i * pitch + k) * rows
-            d_old_row = d_links[first:] if len(d_links) else d_row[:, :LANES]
-            begin(d_new_links[first:], d_row)
-            if alone:
-                ask_alone(k, modes, size, linked, before, d_read, d_row)
-                link_row_back_alone(k, links[first:], w, p, d_row, d_old_row, d_w, d_p)
-            else:
-                ask(k, modes, size, linked, before, d_read, d_row)
-                link_row_back(k, links[first:], w, p, d_row, d_old_row, d_w, d_p)
-
-
-@fused
-def begin(d_new_links: Array, d_row: Array) -> None:
-    """What the next step asks of the links of a row, if it asks."""
-    if not len(d_new_links):
-        clear(d_row)
-        return
-    for m in range(len(d_row)):
-        put(d_row, m, at(d_new_links, m))
-
-
-@fused
-def ask(n: int, modes: Array, size: int, linked: int, before: Array, d_read: Array, d_row: Array) -> None:
-    """Add what the read heads ask of the links of row `n`, but for that to itself."""
-    rows = len(d_row)
-    for j in range(0, len(d_read), rows):
-        along_back(
-            modes[j // rows * size :], linked, at(before, j + n), at(d_read, j + n), before[j:], d_read[j:], d_row
-        )
-    put(d_row, n, full(d_row, 0))
-
-
-@fused
-def ask_alone(n: int, modes: Array, size: int, linked: int, before: Array, d_read: Array, d_row: Array) -> None:
-    """The same of one sample."""
-    (k, lane), rows = divmod(n, LANES), len(d_row)
-    for j in range(0, len(d_read), rows):
-        x, y = before[j + k, lane], d_read[j + k, lane]
-        along_back(modes[j // rows * size :], linked, x, y, before[j:], d_read[j:], d_row)
-    d_row[k, lane] = 0
-
-
-@fused
-def along_back(modes: Array, linked: int, x: Any, y: Any, before: Array, d_read: Array, d_row: Array) -> None:
-    """Add what one read head asks of the links of a row, where it read x before and is asked for y."""
-    ago, onward = at(modes, 0) * x, at(modes, linked) * y
-    for m in range(len(d_row)):
-        add(d_row, m, onward * at(before, m) + ago * at(d_read, m))
-
-
-@fused
-def link_row_back(
-    n: int, links: Array, w: Array, p: Array, d_row: Array, d_links: Array, d_w: Array, d_p: Array
-) -> None:
-    """Back through the links of row `n`; adds to `d_w` and `d_p`."""
-    add(d_w, n, unlink(links, at(w, n), w, p, d_row, d_links, d_w, d_p))
-
-
-@fused
-def link_row_back_alone(
-    n: int, links: Array, w: Array, p: Array, d_row: Array, d_links: Array, d_w: Array, d_p: Array
-) -> None:
-    """The same of one sample."""
-    k, lane = divmod(n, LANES)
-    d_w[k, lane] += total(unlink(links, w[k, lane], w, p, d_row, d_links, d_w, d_p))
-
-
-@fused
-def unlink(links: Array, to: Any, w: Array, p: Array, d_row: Array, d_links: Array, d_w: Array, d_p: Array) -> Any:
-    """Back through `link_row`: the gradient by `to`; adds to `d_w` and `d_p`."""
-    d_to = full(w, 0)
-    for m in range(len(w)):
-        d_link = at(d_row, m)
-        lost = d_link * at(links, m)
-        put(d_links, m, (1 - to - at(w, m)) * d_link)
-        add(d_w, m, 0 - lost)
-        add(d_p, m, to * d_link)
-        d_to += d_link * at(p, m) - lost
-    return d_to
 
 
 @fused

@@ -1,9 +1,11 @@
-"""Room for large tensors that is used again.
+"""Room for tensors that is used again.
 
-The system gives the memory of a large new tensor page by page, which takes longer than to fill it. So memory that no
-tensor has any more is kept for the next of its size; that of another size goes back.
+The system gives the memory of a new tensor page by page, which takes longer than to fill it. So memory that no tensor
+has any more is kept: of large ones for the next of its size, while that of another size goes back; of smaller ones by
+the allocator of the C library, which is told so where it is glibc's.
 """
 
+import ctypes
 from math import prod
 from weakref import finalize
 
@@ -15,6 +17,9 @@ from fogbench.worlds.types import Array
 
 LARGE = 2**24
 """Bytes from which memory is kept; for less the allocator does."""
+
+KEPT = 2**29
+"""Bytes that the allocator may keep; by default it gives back what is free at its end, and asks again a step later."""
 
 _FREE: dict[tuple[int, torch.dtype], list[Array]] = {}
 
@@ -31,3 +36,16 @@ def room(like: Tensor, size: tuple[int, int]) -> Tensor:
     lent = memory[:]  # lives as long as some tensor has the memory
     finalize(lent, free.append, memory).atexit = False
     return torch.from_numpy(lent).view(like.dtype).view(size)
+
+
+def keep_freed() -> None:
+    """Let the allocator keep the memory of tensors that are gone."""
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(_TRIM_THRESHOLD, KEPT)
+        mallopt(_MMAP_THRESHOLD, 2 * LARGE)  # the most that it takes
+
+
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # what glibc calls them
+
+keep_freed()
