@@ -2,11 +2,10 @@
 
 from typing import Any
 
-import numpy as np
-
 from fogbench.learned.kernels.functions import decay, larger
 from fogbench.learned.kernels.instructions import at, full, largest, put, total
 from fogbench.learned.kernels.lanes import LANES
+from fogbench.learned.kernels.planes import planes
 from fogbench.worlds.kernel import fused, kernel
 from fogbench.worlds.types import Array
 
@@ -20,8 +19,8 @@ def clear(rows: Array) -> None:
 
 @kernel
 def unfilled(count: int, like: Array) -> Array:
-    """So many new rows."""
-    return np.empty((count, LANES), like.dtype)
+    """So many new rows, each of its own cache lines."""
+    return planes(count, LANES, like.dtype)
 
 
 @kernel
