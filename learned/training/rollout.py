@@ -2,16 +2,16 @@
 
 Worlds, teachers and what a network sees are those of single episodes, in one call for all where their kind allows it. A
 rollout keeps the way back to the weights, unless PyTorch is told not to, so that what was played is learned from as it
-is.
+is. An episode that is over leaves the network's state when a few others are over too, for that copies the whole state.
 
 Words used here
-    B   episodes;  b  those of them that go on
+    B   episodes;  b  those of them that go on;  h  those that the state holds
     n   decisions of all episodes, step by step
     A   outputs of the network
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import torch
@@ -23,6 +23,9 @@ from fogbench.learned.policy import Policy
 from fogbench.planners.teachers import Teachers
 from fogbench.worlds.batch import Luck, batch_of
 from fogbench.worlds.types import Array, World
+
+SPARE = 0.1
+"""Share of a state's episodes that are over, from which they leave it."""
 
 
 class Turn(NamedTuple):
@@ -93,7 +96,7 @@ def roll_out(
         Mistake: the network is not for such worlds, or a teacher says what none can.
     """
     worlds, lucks = zip(*drawn, strict=True)
-    encoding, live = settings.encoding(), np.arange(len(drawn))
+    encoding, live, held = settings.encoding(), np.arange(len(drawn)), np.arange(len(drawn))
     batch, viewpoints = batch_of(worlds), viewpoints_of(encoding, worlds)
     batch.reset(live, worlds, lucks)
     viewpoints.reset(live, [world.task for world in worlds])
@@ -110,16 +113,28 @@ def roll_out(
             told = teachers.targets(live)
             targets[:, : told.shape[1]] = told  # a smaller world has fewer actions than the network has outputs
         inputs = viewpoints.encode(live)
-        scores, state = network(inputs.to(settings.device), state)
+        scores, state = _step(network, inputs.to(settings.device), state, np.searchsorted(held, live), len(held))
         turn = Turn(len(decisions), live, scores.detach().cpu().numpy(), targets, encoding.open(inputs))
         outputs = choose(turn)
         decisions.append((scores, torch.from_numpy(targets), torch.from_numpy(outputs)))
         steps = batch.step(live, viewpoints.act(live, outputs))
         reached[live] = steps.reached
-        if steps.over.any():
-            live, state = live[~steps.over], rows(state, torch.from_numpy(~steps.over))
+        live = live[~steps.over]
+        if len(live) <= (1 - SPARE) * len(held):
+            held, state = live, rows(state, torch.from_numpy(np.searchsorted(held, live)))
     scores, right, done = (torch.cat(parts) for parts in zip(*decisions, strict=True))  # [n, A], [n, A], [n]
     return Rollout(scores, right.to(scores.device), done.to(scores.device), reached)
+
+
+def _step(network: Network, inputs: Any, state: Any, places: Array, held: int) -> tuple[Tensor, Any]:
+    """The scores [b, A] of episodes that are in such places of a state [h, ...], and the state after."""
+    if len(places) == held:
+        scores, state = network(inputs, state)
+        return scores, state
+    told = np.zeros(held, np.int64)  # those that are over are told what the first is told
+    told[places] = np.arange(len(places))
+    scores, state = network(rows(inputs, torch.from_numpy(told)), state)
+    return scores[torch.from_numpy(places)], state
 
 
 def greedy(turn: Turn) -> Array:
