@@ -1,5 +1,7 @@
 """Memory is used again, and never by two."""
 
+import resource
+
 import pytest
 import torch
 
@@ -36,3 +38,12 @@ def test_little_room_is_left_to_the_allocator() -> None:
     before = dict(module._FREE)
     assert room(torch.empty(0), (4, 16)).shape == (4, 16)
     assert before == module._FREE
+
+
+def test_little_memory_is_kept_too() -> None:
+    """The system is asked for it once, not in each round: not fifty times."""
+    pages = LARGE // 4 // resource.getpagesize()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(50):
+        torch.empty(LARGE // 4, dtype=torch.uint8).fill_(1)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 3 * pages
