@@ -15,6 +15,9 @@ from fogbench.worlds.graph.graph import NODES
 ENCODING = "fogbench.learned.encoding.explored:ExploredEncoding"
 """What its network sees."""
 
+PLANNED = 1
+"""Numbers from the values: how far the best neighbour is."""
+
 HIDDEN = 32
 """Numbers of a layer that looks at one node."""
 
@@ -51,4 +54,4 @@ class MacnExplored(Remembering):
         """Those of a reward of each node, of a score of each neighbour, and of a memory."""
         rewards = parts(inner=linear(FRONTIER, HIDDEN), outer=linear(HIDDEN, 1))
         scores = parts(inner=linear(TRAITS + 1, HIDDEN), outer=linear(HIDDEN, 1))
-        return {"step": (1,), "trust": (1,)} | self.remembering_shapes(1) | parts(rewards=rewards, scores=scores)
+        return {"step": (1,), "trust": (1,)} | self.remembering_shapes(PLANNED) | parts(rewards=rewards, scores=scores)

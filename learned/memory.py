@@ -26,8 +26,8 @@ class Remembering(Showing):
 
     memory: Literal["dnc", "lstm", "gru", "feedforward"] = "dnc"
     """A DNC, the LSTM of its controller alone, a GRU, or, as an ablation, a layer that remembers nothing."""
-    features: Size = 256
-    """Numbers that the memory is told at a step."""
+    features: Size | None = 256
+    """Numbers that the memory is told at a step; null: all that is seen and planned, as it is."""
     hidden: Size = 256
     """The controller's size."""
     memory_rows: Size = 32
@@ -53,17 +53,20 @@ class Remembering(Showing):
 
     def remembering_shapes(self, planned: int) -> Shapes:
         """The shapes of the features' weights, and of the memory's; `planned` numbers come from a planning module."""
-        features = linear(planned + self.seen_count, self.features)
-        return parts(features=features, memory=self._memory_shapes())
+        told = planned + self.seen_count
+        if self.features is None:
+            return parts(memory=self.memory_shapes(told))
+        return parts(features=linear(told, self.features), memory=self.memory_shapes(self.features))
 
-    def _memory_shapes(self) -> Shapes:
+    def memory_shapes(self, inputs: int) -> Shapes:
+        """The shapes of the memory's weights, which is told so many numbers."""
         if self.memory == "lstm":
-            return lstm_shapes(self.features, self.output_count, self.hidden)
+            return lstm_shapes(inputs, self.output_count, self.hidden)
         if self.memory == "gru":
-            return gru_shapes(self.features, self.output_count, self.hidden)
+            return gru_shapes(inputs, self.output_count, self.hidden)
         if self.memory == "feedforward":
-            return feedforward_shapes(self.features, self.output_count, self.hidden)
-        return dnc_shapes(self.features, self.output_count, self.heads, self.hidden)
+            return feedforward_shapes(inputs, self.output_count, self.hidden)
+        return dnc_shapes(inputs, self.output_count, self.heads, self.hidden)
 
 
 def lstm_shapes(inputs: int, outputs: int, hidden: int) -> Shapes:

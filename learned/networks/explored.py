@@ -13,9 +13,8 @@ from torch.nn.functional import softplus
 
 from fogbench.learned.encoding.explored_inputs import ExploredInputs
 from fogbench.learned.layers import linear
-from fogbench.learned.macn_explored import MacnExplored
-from fogbench.learned.networks.memory import remember
-from fogbench.learned.networks.network import Network
+from fogbench.learned.macn_explored import PLANNED, MacnExplored
+from fogbench.learned.networks.memory import RememberingNetwork
 from fogbench.learned.shapes import Shapes
 from fogbench.learned.value_iteration.explored import ends_of
 
@@ -26,28 +25,22 @@ WORST = -10.0
 """How much worse than the best a way can be told to be."""
 
 
-class ExploredNetwork(Network):
+class ExploredNetwork(RememberingNetwork):
     """Plans on what is known, as far as it was explored; a memory says what to make of the plan."""
 
     def __init__(self, settings: MacnExplored) -> None:
         """Draw the weights."""
-        super().__init__()
+        super().__init__(settings, PLANNED)
         shapes = settings.shapes()
         self.most = settings.most
         self.step, self.trust = nn.Parameter(torch.zeros(1)), nn.Parameter(torch.ones(1))
-        self.features = linear(shapes["features.weight"])
-        self.memory = remember(settings)
         self.rewards, self.scores = Perceptron(shapes, "rewards"), Perceptron(shapes, "scores")
-
-    def blank(self, batch: tuple[int, ...]) -> Any:
-        """The memory's."""
-        return self.memory.blank(batch)
 
     def forward(self, inputs: ExploredInputs, state: Any) -> tuple[Tensor, Any]:
         """One step; an output that is no neighbour has the score -inf."""
         gains, best = self.ways(inputs)
         seen = torch.cat([best[:, None], inputs.told], 1)
-        words, state = self.memory.step(self.features(seen).relu(), state)
+        words, state = self.memory.step(self.told(seen), state)
         told = torch.cat([inputs.traits, gains[:, None]], 1)
         scores = self.scores(told, words[inputs.owners]) + self.trust * gains
         table = scores.new_full((len(best), self.most), -torch.inf)

@@ -47,7 +47,7 @@ class MacnNetwork(PlanningNetwork):
     @torch.no_grad()
     def settle(self) -> None:
         """Get ready for single steps without gradients: from now on the weights must not change."""
-        if self.features.weight.is_cpu:
+        if self.features is not None and self.features.weight.is_cpu:
             layers = *self.planner.reward_map.collapsed(), self.planner.normalised(), *self.features.parameters()
             rewards, reward_bias, kernels, features, bias = (weight.contiguous() for weight in layers)
             beside = [] if self.convolutions is None else list(self.convolutions.parameters())

@@ -18,13 +18,17 @@ class RememberingNetwork(Network):
     def __init__(self, settings: Remembering, planned: int) -> None:
         """Draw the weights; `planned` is how many numbers `made` gives."""
         super().__init__()
-        self.features = linear(settings.remembering_shapes(planned)["features.weight"])
-        self.memory = remember(settings)
+        shape = settings.remembering_shapes(planned).get("features.weight")
+        self.features = linear(shape) if shape else None
+        self.memory = remember(settings, shape[0] if shape else planned + settings.seen_count)
 
     def see(self, inputs: Any) -> Tensor:
-        """The features [B, F] of what is seen; they depend on nothing that is remembered."""
-        told = torch.cat([*self.made(inputs), *inputs.beside], 1)
-        return cast(Tensor, self.features(told)).relu()
+        """What the memory is told [B, any]; it depends on nothing that is remembered."""
+        return self.told(torch.cat([*self.made(inputs), *inputs.beside], 1))
+
+    def told(self, seen: Tensor) -> Tensor:
+        """The features of what is seen and planned, or that itself."""
+        return seen if self.features is None else cast(Tensor, self.features(seen)).relu()
 
     def made(self, inputs: Any) -> tuple[Tensor, ...]:
         """What the network makes of what is seen, `planned` numbers [B, any] in all."""
@@ -39,9 +43,9 @@ class RememberingNetwork(Network):
         return self.memory.blank(batch)
 
 
-def remember(settings: Remembering) -> "DNC | LSTM | GRU | FeedForward":
-    """The memory of some settings, with weights drawn anew."""
-    inputs, outputs, hidden = settings.features, settings.output_count, settings.hidden
+def remember(settings: Remembering, inputs: int) -> "DNC | LSTM | GRU | FeedForward":
+    """The memory of some settings that is told so many numbers, with weights drawn anew."""
+    outputs, hidden = settings.output_count, settings.hidden
     if settings.memory == "lstm":
         return LSTM(inputs, outputs, hidden)
     if settings.memory == "gru":

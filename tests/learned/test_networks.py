@@ -150,7 +150,7 @@ def test_cnn_memory_has_four_convolutions_for_the_vi_module() -> None:
 @pytest.mark.parametrize(("memory", "part"), [("dnc", DNC), ("lstm", LSTM), ("gru", GRU), ("feedforward", FeedForward)])
 def test_memories_go_by_name(memory: str, part: Callable[..., Any]) -> None:
     """Each memory is what its name says, with the sizes of the settings."""
-    made = remember(Macn.model_validate({"checkpoint": "none", "memory": memory, "hidden": 20, "features": 10}))
+    made = remember(Macn.model_validate({"checkpoint": "none", "memory": memory, "hidden": 20}), 10)
     assert type(made) is part
     assert made.step(torch.zeros(2, 10), made.blank((2,)))[0].shape == (2, 4)
 
