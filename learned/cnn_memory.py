@@ -33,4 +33,4 @@ class Convolving(Remembering):
 
 
 class CnnMemory(GridPolicy, Convolving):
-    """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM or no memory."""
+    """CNN + Memory: four convolutions on what the sensor shows, then a DNC, an LSTM, a GRU or no memory."""

@@ -2,8 +2,9 @@
 
     pytest bench/timing/test_policies.py -s
 
-Plain is a decision by the equations: two convolutions to the reward map, value iteration, controller and memory access
-as they are written. In each round both take their turn, so that what else the machine does falls on both.
+Plain is a decision by the equations: two convolutions to the reward map, value iteration, four convolutions beside it,
+controller and memory access as they are written. In each round both take their turn, so that what else the machine
+does falls on both.
 """
 
 from collections.abc import Callable
