@@ -27,6 +27,7 @@ NETWORKS: dict[str, Policy] = {
     "macn gru": Macn(checkpoint="none", memory="gru"),
     "macn feed-forward": Macn(checkpoint="none", memory="feedforward"),
     "macn without convolutions": Macn(checkpoint="none", channels=None),
+    "macn without a layer of features": Macn(checkpoint="none", features=None),
     "macn on the map": Macn(checkpoint="none", reading="map", size=(6, 9), iterations=5, channels=5),
     "vin": Vin(checkpoint="none", size=(6, 9)),
     "cnn + memory": CnnMemory(checkpoint="none", size=(7, 7), reads=1, writes=2, links=False),
