@@ -9,6 +9,7 @@ from torch import Tensor
 from fogbench.learned import checkpoint
 from fogbench.learned.checkpoint import NONE, form
 from fogbench.learned.encoding.encoding import Viewpoint
+from fogbench.learned.kernels.room import keep_freed
 from fogbench.learned.networks.network import Network, settled, tensors
 from fogbench.learned.policy import Policy
 from fogbench.worlds.mistake import Mistake
@@ -18,9 +19,12 @@ from fogbench.worlds.types import Observation, Task
 def load(settings: Policy) -> Network:
     """A network of some settings, with its weights, on its device, that can be trained.
 
+    From now on this process keeps the memory of tensors that are gone, for those of the next step.
+
     Raises:
         Mistake: the checkpoint is broken or does not fit.
     """
+    keep_freed()
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(settings.seed)
         network = cast(Network, settings.network().eval())

@@ -39,7 +39,7 @@ def room(like: Tensor, size: tuple[int, int]) -> Tensor:
 
 
 def keep_freed() -> None:
-    """Let the allocator keep the memory of tensors that are gone."""
+    """Let the allocator of this process keep the memory of tensors that are gone."""
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
         mallopt(_TRIM_THRESHOLD, KEPT)
@@ -47,5 +47,3 @@ def keep_freed() -> None:
 
 
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # what glibc calls them
-
-keep_freed()

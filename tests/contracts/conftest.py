@@ -47,7 +47,10 @@ AGENTS: dict[str, list[dict[str, Any]]] = {
         {"checkpoint": "none", "nodes": 36, "memory": "lstm"},
     ],
     "vin_graph": [{"checkpoint": "none", "nodes": 36}, {"checkpoint": "none", "nodes": 36, "discount": 0.9}],
-    "cnn_memory_graph": [{"checkpoint": "none", "nodes": 36, "features": None}, {"checkpoint": "none", "nodes": 36, "memory": "lstm"}],
+    "cnn_memory_graph": [
+        {"checkpoint": "none", "nodes": 36, "features": None},
+        {"checkpoint": "none", "nodes": 36, "memory": "lstm"},
+    ],
     "macn_explored": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "feedforward", "most": 40}],
     "macn_robot": [{"checkpoint": "none"}, {"checkpoint": "none", "memory": "lstm", "masked": True}],
     "vin_robot": [{"checkpoint": "none"}],
