@@ -99,9 +99,7 @@ def follow_four(
 
 
 @fused
-def follow_four_alone(
-    n: int, four: Array, starts: Four, vectors: Array, ahead: Array, back: Array, rows: int
-) -> None:  # fmt: skip
+def follow_four_alone(n: int, four: Array, starts: Four, vectors: Array, ahead: Array, back: Array, rows: int) -> None:
     """The same of one sample."""
     k, lane = divmod(n, LANES)
     for j in range(0, len(vectors), rows):
@@ -112,9 +110,7 @@ def follow_four_alone(
 
 
 @fused
-def follow(
-    links: Array, starts: Four, rows: int, vector: Array, there: Any, back: Array
-) -> Any:  # fmt: skip
+def follow(links: Array, starts: Four, rows: int, vector: Array, there: Any, back: Array) -> Any:
     """What the links of four rows give ahead; adds to `back` what they give where the vector is what it is there."""
     (a, b, c, d), (at_a, at_b, at_c, at_d) = there, starts
     of_a = of_b = of_c = of_d = full(back, 0)

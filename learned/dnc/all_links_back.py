@@ -55,9 +55,7 @@ def begin(d_new_links: Array, d_rows: Array) -> None:
 
 
 @fused
-def ask(
-    n: int, modes: Array, size: int, linked: int, before: Array, d_read: Array, d_four: Array, rows: int
-) -> None:  # fmt: skip
+def ask(n: int, modes: Array, size: int, linked: int, before: Array, d_read: Array, d_four: Array, rows: int) -> None:
     """Add what the read heads ask of the links of four rows from `n` on, but for those of a row to itself."""
     _, b, c, d = starts_of(n, rows, 1)
     for j in range(0, len(d_read), rows):
