@@ -27,10 +27,10 @@ def link_all_back(
 ) -> None:  # fmt: skip
     """Back through all links of write head `i`; adds to `d_w` and `d_p`."""
     rows, linked, alone, pitch = sizes[1], sizes[4], sizes[5], link_rows(sizes)
-    four, d_four, nowhere = unfilled(FOUR * rows, d_read), unfilled(FOUR * rows, d_read), unfilled(FOUR * rows, d_read)
+    four, d_four = unfilled(FOUR * rows, d_read), unfilled(FOUR * rows, d_read)
     for n in range(0, pitch, FOUR):
         first, starts = (i * pitch + n) * rows, starts_of(n, pitch, rows)
-        own, d_own = links[first:], d_links[first:] if len(d_links) else nowhere[:, :LANES]
+        own, d_own = links[first:], d_links[first:] if len(d_links) else four[:, :LANES]  # which is read by then
         begin(d_new_links[first:], d_four[: min(FOUR, pitch - n) * rows])
         if alone:
             link_four_alone(n, own, w, p, four)
@@ -101,8 +101,7 @@ def along_back(backward: Any, forward: Any, before: Array, d_read: Array, d_four
 
 @fused
 def unlink_four(
-    n: int, links: Array, starts: Four, w: Array, p: Array, d_four: Array, d_links: Array,
-    d_w: Array, d_p: Array,
+    n: int, links: Array, starts: Four, w: Array, p: Array, d_four: Array, d_links: Array, d_w: Array, d_p: Array
 ) -> None:  # fmt: skip
     """Back through the links of four rows from `n` on; adds to `d_w` and `d_p`."""
     _, b, c, d = starts_of(n, len(w), 1)
@@ -114,8 +113,7 @@ def unlink_four(
 
 @fused
 def unlink_alone(
-    n: int, links: Array, starts: Four, w: Array, p: Array, d_four: Array, d_links: Array,
-    d_w: Array, d_p: Array,
+    n: int, links: Array, starts: Four, w: Array, p: Array, d_four: Array, d_links: Array, d_w: Array, d_p: Array
 ) -> None:  # fmt: skip
     """The same of one sample."""
     k, lane = divmod(n, LANES)
@@ -127,8 +125,7 @@ def unlink_alone(
 
 @fused
 def unlink(
-    links: Array, starts: Four, to: Any, w: Array, p: Array, d_four: Array, d_links: Array,
-    d_w: Array, d_p: Array,
+    links: Array, starts: Four, to: Any, w: Array, p: Array, d_four: Array, d_links: Array, d_w: Array, d_p: Array
 ) -> Any:  # fmt: skip
     """Back through `link_row` of four rows: the gradients by `to`; adds to `d_w` and `d_p`.
 

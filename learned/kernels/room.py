@@ -2,7 +2,7 @@
 
 The system gives the memory of a new tensor page by page, which takes longer than to fill it. So memory that no tensor
 has any more is kept: of large ones for the next of its size, while that of another size goes back; of smaller ones by
-the allocator of the C library, which is told so where it is glibc's.
+the allocator of the C library, which `keep_freed` tells so where it is glibc's.
 """
 
 import ctypes

@@ -8,10 +8,10 @@ from fogbench.learned.cnn_memory import LAST, Convolving
 from fogbench.learned.convolution.convolutions import Convolutions
 from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.encoding.images import Images
-from fogbench.learned.networks.memory import RememberingNetwork
+from fogbench.learned.networks.memory import ImageNetwork
 
 
-class CnnMemoryNetwork(RememberingNetwork):
+class CnnMemoryNetwork(ImageNetwork):
     """Convolutions before a memory."""
 
     def __init__(self, settings: Convolving) -> None:

@@ -15,11 +15,11 @@ from fogbench.learned.encoding.grid_sizes import CHANNELS
 from fogbench.learned.encoding.images import Images, here
 from fogbench.learned.macn import Macn, PlanningAndRemembering
 from fogbench.learned.networks.macn_single import Weights, in_lanes, see
-from fogbench.learned.networks.memory import RememberingNetwork
+from fogbench.learned.networks.memory import ImageNetwork
 from fogbench.learned.networks.vin import planner
 
 
-class PlanningNetwork(RememberingNetwork):
+class PlanningNetwork(ImageNetwork):
     """A VI module before a memory."""
 
     def __init__(self, settings: PlanningAndRemembering, beside: int = 0) -> None:

@@ -13,22 +13,30 @@ from fogbench.learned.networks.network import Network
 
 
 class RememberingNetwork(Network):
-    """What is planned, with what is seen as low-level features, into a memory."""
+    """A memory, and the layer before it, if there is one."""
 
     def __init__(self, settings: Remembering, planned: int) -> None:
-        """Draw the weights; `planned` is how many numbers `made` gives."""
+        """Draw the weights; the memory is told so many numbers beside what is seen."""
         super().__init__()
         shape = settings.remembering_shapes(planned).get("features.weight")
         self.features = linear(shape) if shape else None
         self.memory = remember(settings, shape[0] if shape else planned + settings.seen_count)
 
-    def see(self, inputs: Any) -> Tensor:
-        """What the memory is told [B, any]; it depends on nothing that is remembered."""
-        return self.told(torch.cat([*self.made(inputs), *inputs.beside], 1))
-
     def told(self, seen: Tensor) -> Tensor:
         """The features of what is seen and planned, or that itself."""
         return seen if self.features is None else cast(Tensor, self.features(seen)).relu()
+
+    def blank(self, batch: tuple[int, ...]) -> Any:
+        """The memory's."""
+        return self.memory.blank(batch)
+
+
+class ImageNetwork(RememberingNetwork):
+    """What is made of an image, with what is seen beside it, into a memory, which scores the outputs."""
+
+    def see(self, inputs: Any) -> Tensor:
+        """What the memory is told [B, any]; it depends on nothing that is remembered."""
+        return self.told(torch.cat([*self.made(inputs), *inputs.beside], 1))
 
     def made(self, inputs: Any) -> tuple[Tensor, ...]:
         """What the network makes of what is seen, `planned` numbers [B, any] in all."""
@@ -37,10 +45,6 @@ class RememberingNetwork(Network):
     def forward(self, inputs: Any, state: Any) -> tuple[Tensor, Any]:
         """One step."""
         return self.memory.step(self.see(inputs), state)
-
-    def blank(self, batch: tuple[int, ...]) -> Any:
-        """The memory's."""
-        return self.memory.blank(batch)
 
 
 def remember(settings: Remembering, inputs: int) -> "DNC | LSTM | GRU | FeedForward":

@@ -41,7 +41,7 @@ def test_little_room_is_left_to_the_allocator() -> None:
 
 
 def test_little_memory_is_kept_too() -> None:
-    """The system is asked for it once, not in each round: not fifty times."""
+    """The system is asked for it once, not in each of fifty rounds."""
     keep_freed()
     pages = LARGE // 4 // resource.getpagesize()
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
